@@ -1,0 +1,49 @@
+#pragma once
+
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include <cellist/detail/memory.hpp>
+#include <cellist/device.hpp>
+
+namespace cellist {
+
+/// `size()` elements of T in device memory. T has the layout that the kernels expect. Movable, not
+/// copyable.
+template <class T>
+class Buffer {
+    static_assert(std::is_trivially_copyable_v<T>, "a Buffer holds trivially copyable elements");
+
+public:
+    /// Room for `size` elements, uninitialised. Throws Error if that is more than the device can
+    /// allocate at once.
+    Buffer(const Device& device, std::size_t size)
+        : memory_(device.state(), size, sizeof(T)), size_(size) {}
+
+    /// A copy of `elements`. Blocks until they are copied.
+    Buffer(const Device& device, std::span<const T> elements) : Buffer(device, elements.size()) {
+        memory_.write(elements.data(), elements.size_bytes());
+    }
+    Buffer(const Device& device, const std::vector<T>& elements)
+        : Buffer(device, std::span<const T>(elements)) {}
+
+    [[nodiscard]] std::size_t size() const { return size_; }
+    [[nodiscard]] const cl::Buffer& cl() const { return memory_.cl(); }
+
+    /// A copy of the elements, after everything that was enqueued before. Blocks.
+    [[nodiscard]] std::vector<T> download() const {
+        std::vector<T> elements(size_);
+        memory_.read(elements.data(), size_ * sizeof(T));
+        return elements;
+    }
+
+    /// Sets every element to `value`. Blocks only where sizeof(T) is no power of two up to 128.
+    void fill(const T& value) { memory_.fill(&value, sizeof(T), size_ * sizeof(T)); }
+
+private:
+    detail::Memory memory_;
+    std::size_t size_;
+};
+
+}  // namespace cellist

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <cellist/opencl.hpp>
+
+namespace cellist {
+
+namespace detail {
+struct DeviceState;
+}
+
+/// What a device says about itself.
+struct DeviceInfo {
+    std::string name;
+    std::string platform;
+    std::string version;  ///< OpenCL version, e.g. "OpenCL 3.0 CUDA"
+    std::string driver;
+    cl_device_type type = 0;
+    std::uint64_t global_memory_bytes = 0;
+    std::uint64_t max_allocation_bytes = 0;  ///< largest single buffer
+    std::uint64_t local_memory_bytes = 0;    ///< per work-group
+    std::uint32_t compute_units = 0;
+    std::size_t max_work_group_size = 0;
+    bool int64_atomics = false;
+    bool sub_groups = false;
+    bool fp64 = false;
+};
+
+/// An OpenCL device with a context, a queue and a cache of built programs. Everything that is made
+/// from a Device shares them, and stays valid after the Device object is gone. Movable, not
+/// copyable. Several threads may use one Device and objects made from it, each object from one
+/// thread at a time.
+class Device {
+public:
+    /// The device that the environment variable CELLIST_DEVICE names, as in choose(selector); if it
+    /// is not set or empty, the first GPU, else the first device. Throws Error if there is none.
+    [[nodiscard]] static Device choose();
+
+    /// The device with this index in all(), or the first whose name or platform contains the
+    /// selector, without regard to case. Throws Error, listing the devices, if there is none.
+    [[nodiscard]] static Device choose(std::string_view selector);
+
+    /// Works on the caller's own context and queue. The queue must be in order; its events have
+    /// times if it was made with CL_QUEUE_PROFILING_ENABLE.
+    Device(cl::Context context, cl::CommandQueue queue);
+
+    Device(Device&&) noexcept;
+    Device& operator=(Device&&) noexcept;
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
+    ~Device();
+
+    /// All devices of all platforms, in the order that choose() counts them in. Empty if there is no
+    /// platform.
+    [[nodiscard]] static std::vector<DeviceInfo> all();
+
+    [[nodiscard]] const DeviceInfo& info() const;
+    [[nodiscard]] const cl::Context& context() const;
+    [[nodiscard]] const cl::CommandQueue& queue() const;
+
+    /// Blocks until everything that was enqueued has run.
+    void finish() const;
+
+    /// @private
+    [[nodiscard]] const std::shared_ptr<detail::DeviceState>& state() const { return state_; }
+
+private:
+    explicit Device(const cl::Device& device);
+    std::shared_ptr<detail::DeviceState> state_;
+};
+
+}  // namespace cellist

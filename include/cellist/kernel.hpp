@@ -1,0 +1,77 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <cellist/detail/arguments.hpp>
+#include <cellist/device.hpp>
+#include <cellist/range.hpp>
+#include <cellist/struct.hpp>
+
+namespace cellist {
+
+/// The OpenCL C source of a program.
+struct Source {
+    std::string text;
+    /// Stands before the line numbers in the compiler's messages.
+    std::string file_name = "kernel";
+    /// Added to the build options, which start with "-cl-std=CL1.2 -cl-kernel-arg-info".
+    std::string options = {};
+};
+
+/// A kernel of the user's, built for a device. Programs are built once per device, source, types and
+/// options. `#include <cellist/lists.clh>` and `<cellist/glm.clh>` need no path. Movable, not
+/// copyable.
+class Kernel {
+public:
+    /// Builds `source` and takes the kernel called `name` from it. `uses` names the types that the
+    /// source may use: containers, and cellist::type<T> for other adapted structs. Throws OpenClError
+    /// with the compiler's log where the source does not build, Error where a struct's layout on the
+    /// device differs. Blocks while it compiles.
+    template <class... Uses>
+    Kernel(const Device& device, const Source& source, const std::string& name, const Uses&... uses)
+        : Kernel(device.state(), source, name, definitions_of(uses...)) {}
+    template <class... Uses>
+    Kernel(const Device& device, std::string_view source, const std::string& name,
+           const Uses&... uses)
+        : Kernel(device, Source{.text = std::string(source)}, name, uses...) {}
+
+    Kernel(Kernel&&) noexcept;
+    Kernel& operator=(Kernel&&) noexcept;
+    Kernel(const Kernel&) = delete;
+    Kernel& operator=(const Kernel&) = delete;
+    ~Kernel();
+
+    /// Enqueues the kernel over a range. Does not block. Arguments in the kernel's order: scalars,
+    /// adapted structs, Buffer, Lists, cl::Buffer, cl::Image, cl::Sampler, LocalMemory. Throws Error
+    /// if their number or the size of one does not fit the kernel's parameters.
+    template <class... Args>
+    cl::Event run(const Range& range, const Args&... args) {
+        detail::Arguments arguments;
+        (arguments.add(args), ...);
+        return enqueue(range, arguments);
+    }
+
+    [[nodiscard]] const std::string& name() const;
+
+    /// @private
+    Kernel(std::shared_ptr<detail::DeviceState> device, const Source& source,
+           const std::string& name, const detail::Definitions& definitions);
+    /// @private
+    cl::Event enqueue(const Range& range, const detail::Arguments& arguments);
+
+private:
+    template <class... Uses>
+    static detail::Definitions definitions_of(const Uses&... uses) {
+        detail::Definitions all;
+        (all.add(detail::definitions_used(uses)), ...);
+        return all;
+    }
+
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace cellist

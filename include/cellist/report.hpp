@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace cellist {
+
+/// What a build did. `attempted == stored + dropped + rejected`, exactly.
+struct BuildReport {
+    std::uint64_t attempted = 0;       ///< inserts that the kernels called in the last pass
+    std::uint64_t stored = 0;          ///< records in the lists
+    std::uint64_t dropped = 0;         ///< records that found no free node
+    std::uint64_t rejected = 0;        ///< records for cells outside of the shape
+    std::uint64_t capacity_nodes = 0;  ///< nodes in the pool after the build
+    std::uint32_t passes = 0;          ///< times the kernels ran: 1, or more after growing
+};
+
+/// How long the lists are.
+struct Lengths {
+    std::vector<std::uint64_t> histogram;  ///< cells by length: index 0 to `longest`
+    std::uint64_t longest = 0;             ///< nodes in the longest list
+    std::uint64_t nonempty_cells = 0;      ///< cells with at least one node
+    std::uint64_t total = 0;               ///< nodes in all lists
+};
+
+/// What Lists::validate() found. All counts are 0 in a sound container.
+struct Validation {
+    std::uint64_t broken_links = 0;   ///< heads and links to a node that was never allocated
+    std::uint64_t repeated_nodes = 0; ///< links to a node that another link reached: cycles, shared tails
+    std::uint64_t lost_nodes = 0;     ///< allocated nodes that no head leads to
+    std::uint64_t first_bad_cell = 0; ///< lowest cell with a broken or repeated link; valid if there is one
+
+    /// True if every allocated node is reached from exactly one head, exactly once.
+    [[nodiscard]] bool ok() const {
+        return broken_links == 0 && repeated_nodes == 0 && lost_nodes == 0;
+    }
+    /// One line for people.
+    [[nodiscard]] std::string message() const;
+};
+
+}  // namespace cellist

@@ -1,0 +1,274 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <tuple>
+#include <type_traits>
+
+#include <cellist/detail/for_each.hpp>
+#include <cellist/detail/record_type.hpp>
+#include <cellist/opencl.hpp>
+
+/// Makes a struct known to kernels under its own name, with the same members at the same offsets.
+///
+///     struct Hit { cl_float depth; cl_uint id; };
+///     CELLIST_STRUCT(Hit, depth, id);
+///
+/// Stands in the namespace of the struct, and names every member in order of declaration. Members
+/// are scalars (`cl_float`, `cl_uint`, ... and the C++ types of the same size, enums included), `cl_`
+/// vectors, arrays, and structs that are adapted themselves; `<cellist/glm.hpp>` adds GLM's types.
+/// Note that `cl_float3` is `cl_float4` on the host, so a kernel sees a float4.
+///
+/// The struct must be trivially copyable and of standard layout. The offsets are compared with
+/// OpenCL C's rules when the host program is compiled, and with the device compiler's in each build.
+#define CELLIST_STRUCT(type, ...)                                                                  \
+    constexpr auto cellist_describe([[maybe_unused]] const type* tag) {                            \
+        return ::cellist::detail::describe<type>(                                                  \
+            #type CELLIST_FOR_EACH(CELLIST_STRUCT_MEMBER, type, __VA_ARGS__));                     \
+    }                                                                                              \
+    static_assert(std::is_trivially_copyable_v<type> && std::is_standard_layout_v<type>,           \
+                  "CELLIST_STRUCT: " #type                                                         \
+                  " must be trivially copyable and of standard layout");                           \
+    static_assert(::cellist::detail::is_plain_name(#type),                                         \
+                  "CELLIST_STRUCT stands in the struct's own namespace, with its plain name");     \
+    static_assert(cellist_describe(static_cast<const type*>(nullptr)).matches_device_layout(),     \
+                  "CELLIST_STRUCT: the layout of " #type                                           \
+                  " differs from OpenCL C's: name every member, in order of declaration, and use " \
+                  "types that are aligned as on the device")
+
+#define CELLIST_STRUCT_MEMBER(type, member)                                                        \
+    , ::cellist::detail::Member<type, decltype(type::member)> {                                    \
+        #member, &type::member, offsetof(type, member)                                             \
+    }
+
+namespace cellist {
+
+/// How a C++ type appears in OpenCL C. Specialise it to teach cellist a type that is not a struct of
+/// yours (see <cellist/glm.hpp>). Members:
+///   static constexpr std::size_t size, alignment;          by OpenCL C's rules
+///   static std::string name();                             e.g. "float4"
+///   static void define(detail::Definitions&);              adds the definitions that the name needs
+///   static void add_scalars(const std::string& path, std::vector<std::string>&);
+///                                                          the scalars of a value, in order
+template <class T>
+struct DeviceType;
+
+/// Names an adapted struct that a kernel uses without a container of it:
+/// `Kernel(device, source, "draw", fragments, cellist::type<Camera>)`.
+template <class T>
+struct Type {};
+template <class T>
+inline constexpr Type<T> type{};
+
+namespace detail {
+
+constexpr bool is_plain_name(const char* name) {
+    for (; *name != '\0'; ++name)
+        if (*name == ':' || *name == '<') return false;
+    return true;
+}
+
+constexpr std::size_t round_up(std::size_t value, std::size_t multiple) {
+    return (value + multiple - 1) / multiple * multiple;
+}
+
+template <class Owner, class M>
+struct Member {
+    const char* name;
+    M Owner::*pointer;
+    std::size_t offset;
+    using type = M;
+};
+
+template <class T, class... Members>
+struct Description {
+    const char* name;
+    std::tuple<Members...> members;
+
+    /// True if OpenCL C puts the members where the host has them.
+    [[nodiscard]] constexpr bool matches_device_layout() const {
+        std::size_t end = 0;
+        std::size_t alignment = 1;
+        bool same = true;
+        std::apply(
+            [&](const auto&... member) {
+                (([&] {
+                     using OnDevice = DeviceType<typename std::remove_cvref_t<decltype(member)>::type>;
+                     end = round_up(end, OnDevice::alignment);
+                     same = same && end == member.offset;
+                     end += OnDevice::size;
+                     alignment = alignment > OnDevice::alignment ? alignment : OnDevice::alignment;
+                 }()),
+                 ...);
+            },
+            members);
+        return same && alignment == alignof(T) && round_up(end, alignment) == sizeof(T);
+    }
+};
+
+template <class T, class... Members>
+constexpr Description<T, Members...> describe(const char* name, Members... members) {
+    return {name, {members...}};
+}
+
+template <class T>
+concept Adapted = requires { cellist_describe(static_cast<const T*>(nullptr)); };
+
+template <Adapted T>
+inline constexpr auto description = cellist_describe(static_cast<const T*>(nullptr));
+
+/// The scalars of OpenCL C by kind and size; nullptr for types that it does not have.
+template <class T>
+constexpr const char* scalar_name() {
+    if constexpr (std::is_same_v<T, bool>)
+        return nullptr;  // has no fixed size in OpenCL C
+    else if constexpr (std::is_enum_v<T>)
+        return scalar_name<std::underlying_type_t<T>>();
+    else if constexpr (std::is_same_v<T, float>)
+        return "float";
+    else if constexpr (std::is_same_v<T, double>)
+        return "double";
+    else if constexpr (std::is_integral_v<T>) {
+        constexpr std::array names{"char", "uchar", "short", "ushort", "int", "uint", "long", "ulong"};
+        constexpr std::size_t size_class =
+            sizeof(T) == 1 ? 0 : sizeof(T) == 2 ? 1 : sizeof(T) == 4 ? 2 : 3;
+        return names[2 * size_class + (std::is_unsigned_v<T> ? 1 : 0)];
+    } else
+        return nullptr;
+}
+
+template <class T>
+concept Scalar = scalar_name<T>() != nullptr;
+
+}  // namespace detail
+
+template <detail::Scalar T>
+struct DeviceType<T> {
+    static constexpr std::size_t size = sizeof(T);
+    static constexpr std::size_t alignment = sizeof(T);
+    static std::string name() { return detail::scalar_name<T>(); }
+    static void define(detail::Definitions& definitions) {
+        if constexpr (std::is_same_v<T, double>) definitions.needs_fp64 = true;
+    }
+    static void add_scalars(const std::string& path, std::vector<std::string>& scalars) {
+        scalars.push_back(path);
+    }
+};
+
+template <class T, std::size_t count>
+struct DeviceType<T[count]> {
+    static constexpr std::size_t size = DeviceType<T>::size * count;
+    static constexpr std::size_t alignment = DeviceType<T>::alignment;
+    static std::string name() { return DeviceType<T>::name(); }
+    static std::string extents() { return "[" + std::to_string(count) + "]" + inner_extents(); }
+    static void define(detail::Definitions& definitions) { DeviceType<T>::define(definitions); }
+    static void add_scalars(const std::string& path, std::vector<std::string>& scalars) {
+        for (std::size_t i = 0; i < count; ++i)
+            DeviceType<T>::add_scalars(path + "[" + std::to_string(i) + "]", scalars);
+    }
+
+private:
+    static std::string inner_extents() {
+        if constexpr (std::is_array_v<T>)
+            return DeviceType<T>::extents();
+        else
+            return {};
+    }
+};
+
+template <detail::Adapted T>
+struct DeviceType<T> {
+    static constexpr std::size_t size = sizeof(T);
+    static constexpr std::size_t alignment = alignof(T);
+    static std::string name() { return detail::description<T>.name; }
+    static void define(detail::Definitions& definitions) {
+        detail::RecordType record{name(), size, alignment, {}};
+        std::apply([&](const auto&... member) { (add_member(member, record, definitions), ...); },
+                   detail::description<T>.members);
+        definitions.add(record);
+    }
+    static void add_scalars(const std::string& path, std::vector<std::string>& scalars) {
+        std::apply(
+            [&](const auto&... member) {
+                (DeviceType<typename std::remove_cvref_t<decltype(member)>::type>::add_scalars(
+                     path + "." + member.name, scalars),
+                 ...);
+            },
+            detail::description<T>.members);
+    }
+
+private:
+    template <class M>
+    static void add_member(const detail::Member<T, M>& member, detail::RecordType& record,
+                           detail::Definitions& definitions) {
+        using OnDevice = DeviceType<M>;
+        OnDevice::define(definitions);
+        detail::RecordMember out{member.name, OnDevice::name(), {}, member.offset, {}, false};
+        if constexpr (std::is_array_v<M>) out.extents = OnDevice::extents();
+        if constexpr (detail::Scalar<M>) out.is_scalar = true;
+        OnDevice::add_scalars(member.name, out.scalars);
+        record.members.push_back(std::move(out));
+    }
+};
+
+/// @private The cl_ vectors.
+#define CELLIST_VECTOR_TYPE(base, count)                                                           \
+    template <>                                                                                    \
+    struct DeviceType<cl_##base##count> {                                                          \
+        static constexpr std::size_t size = sizeof(cl_##base##count);                              \
+        static constexpr std::size_t alignment = sizeof(cl_##base##count);                         \
+        static std::string name() { return #base #count; }                                         \
+        static void define(detail::Definitions& definitions) {                                     \
+            DeviceType<cl_##base>::define(definitions);                                            \
+        }                                                                                          \
+        static void add_scalars(const std::string& path, std::vector<std::string>& scalars) {      \
+            for (std::size_t i = 0; i < count; ++i)                                                \
+                scalars.push_back(path + ".s" + "0123456789abcdef"[i]);                            \
+        }                                                                                          \
+    };
+#define CELLIST_VECTOR_TYPES(base)                                                                 \
+    CELLIST_VECTOR_TYPE(base, 2)                                                                   \
+    CELLIST_VECTOR_TYPE(base, 4) CELLIST_VECTOR_TYPE(base, 8) CELLIST_VECTOR_TYPE(base, 16)
+CELLIST_VECTOR_TYPES(char)
+CELLIST_VECTOR_TYPES(uchar)
+CELLIST_VECTOR_TYPES(short)
+CELLIST_VECTOR_TYPES(ushort)
+CELLIST_VECTOR_TYPES(int)
+CELLIST_VECTOR_TYPES(uint)
+CELLIST_VECTOR_TYPES(long)
+CELLIST_VECTOR_TYPES(ulong)
+CELLIST_VECTOR_TYPES(float)
+CELLIST_VECTOR_TYPES(double)
+#undef CELLIST_VECTOR_TYPES
+#undef CELLIST_VECTOR_TYPE
+
+namespace detail {
+
+/// Everything that a program needs to know T.
+template <class T>
+Definitions definitions_of() {
+    Definitions definitions;
+    DeviceType<T>::define(definitions);
+    return definitions;
+}
+
+/// The name of the member that a pointer to member means. Only scalars order records.
+template <Adapted T, class M>
+std::string member_name(M T::*pointer) {
+    static_assert(Scalar<M>, "records are ordered by a scalar member, or by an expression");
+    std::string name;
+    std::apply(
+        [&](const auto&... member) {
+            (([&] {
+                 if constexpr (std::is_same_v<typename std::remove_cvref_t<decltype(member)>::type, M>)
+                     if (member.pointer == pointer) name = member.name;
+             }()),
+             ...);
+        },
+        description<T>.members);
+    return name;
+}
+
+}  // namespace detail
+}  // namespace cellist

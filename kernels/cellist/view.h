@@ -1,0 +1,49 @@
+// What the host and the device must agree on about a container. Compiled as C++ and as OpenCL C.
+#ifndef CELLIST_VIEW_H
+#define CELLIST_VIEW_H
+
+#ifdef __OPENCL_VERSION__
+#define CELLIST_UINT uint
+#else
+#define CELLIST_UINT cl_uint
+#endif
+
+// Nodes that are handed out from one counter before the addresses move on by a whole round of
+// shards. A block of 256 keeps the stores of a work-group together.
+#define CELLIST_BLOCK_BITS 8u
+#define CELLIST_BLOCK_NODES (1u << CELLIST_BLOCK_BITS)
+
+// Shards at most. More do not help on any device measured; fewer bring back contention.
+#define CELLIST_SHARD_BITS_MAX 8u
+
+// No node, no cell. Also the end of a list.
+#define CELLIST_NONE 0xFFFFFFFFu
+
+// Largest capacity. It leaves room between the capacity and 2^32 for the work-items that are inside
+// an allocation at one moment: a counter runs past its last node by as many, and comes back.
+#define CELLIST_CAPACITY_NODES_MAX 0xC0000000u
+
+// Largest extent of one dimension: coordinates are compared as 32-bit integers.
+#define CELLIST_EXTENT_MAX 0x7FFFFFFFu
+
+// Passed to kernels by value.
+typedef struct cellist_view {
+    CELLIST_UINT extent[4];       // cells along x, y, z, w; missing dimensions are 1
+    CELLIST_UINT cells;           // product of the extents
+    CELLIST_UINT capacity_nodes;  // nodes in the pool
+    CELLIST_UINT shard_bits;      // the pool has 2^shard_bits shards
+} cellist_view;
+
+// The counters of one shard, alone in its cache line. The struct behind the last shard holds the
+// pool's state.
+typedef struct cellist_shard {
+    CELLIST_UINT allocated;      // nodes handed out
+    CELLIST_UINT dropped_low;    // inserts that found no free node, 64 bits in two words
+    CELLIST_UINT dropped_high;
+    CELLIST_UINT rejected_low;   // inserts into cells outside the shape, 64 bits in two words
+    CELLIST_UINT rejected_high;
+    CELLIST_UINT pool_full;      // behind the last shard: not 0 once every shard was seen full
+    CELLIST_UINT padding[10];
+} cellist_shard;
+
+#endif

@@ -1,0 +1,171 @@
+#include <cellist/device.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cstdlib>
+
+#include "device_state.hpp"
+
+namespace cellist {
+
+namespace {
+
+/// Every device of every platform. No platform is no device, not an error.
+std::vector<cl::Device> all_devices() {
+    std::vector<cl::Platform> platforms;
+    cl_uint count = 0;
+    if (clGetPlatformIDs(0, nullptr, &count) != CL_SUCCESS || count == 0) return {};
+    std::vector<cl_platform_id> ids(count);
+    if (clGetPlatformIDs(count, ids.data(), nullptr) != CL_SUCCESS) return {};
+    std::vector<cl::Device> devices;
+    for (const cl_platform_id platform : ids) {
+        if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 0, nullptr, &count) != CL_SUCCESS) continue;
+        std::vector<cl_device_id> handles(count);
+        if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, count, handles.data(), nullptr) != CL_SUCCESS)
+            continue;
+        for (const cl_device_id handle : handles) devices.emplace_back(handle, true);
+    }
+    return devices;
+}
+
+/// The text up to the first NUL: drivers differ in whether they count it.
+std::string trimmed(std::string text) {
+    text.resize(std::min(text.size(), text.find('\0')));
+    text.erase(0, text.find_first_not_of(' '));
+    text.erase(text.find_last_not_of(' ') + 1);
+    return text;
+}
+
+DeviceInfo describe(const cl::Device& device) {
+    const std::string extensions = device.getInfo<CL_DEVICE_EXTENSIONS>();
+    const auto has = [&](const char* name) { return extensions.find(name) != std::string::npos; };
+    DeviceInfo info;
+    info.name = trimmed(device.getInfo<CL_DEVICE_NAME>());
+    info.platform =
+        trimmed(cl::Platform(device.getInfo<CL_DEVICE_PLATFORM>()).getInfo<CL_PLATFORM_NAME>());
+    info.version = trimmed(device.getInfo<CL_DEVICE_VERSION>());
+    info.driver = trimmed(device.getInfo<CL_DRIVER_VERSION>());
+    info.type = device.getInfo<CL_DEVICE_TYPE>();
+    info.global_memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+    info.max_allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+    info.local_memory_bytes = device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
+    info.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+    info.max_work_group_size = device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
+    info.int64_atomics = has("cl_khr_int64_base_atomics");
+    info.sub_groups = has("cl_khr_subgroups") || has("cl_intel_subgroups");
+    info.fp64 = device.getInfo<CL_DEVICE_DOUBLE_FP_CONFIG>() != 0;
+    return info;
+}
+
+std::string lower(std::string_view text) {
+    std::string out(text);
+    std::transform(out.begin(), out.end(), out.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return out;
+}
+
+constexpr const char* no_platform =
+    "no OpenCL device found: install a driver, or PoCL for the CPU (pocl-opencl-icd)";
+
+}  // namespace
+
+Device Device::choose() {
+    const char* selector = std::getenv("CELLIST_DEVICE");
+    if (selector != nullptr && *selector != '\0') return choose(selector);
+    return detail::opencl([] {
+        const std::vector<cl::Device> devices = all_devices();
+        if (devices.empty()) throw Error(no_platform);
+        const auto gpu = std::find_if(devices.begin(), devices.end(), [](const cl::Device& device) {
+            return (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_GPU) != 0;
+        });
+        return Device(gpu != devices.end() ? *gpu : devices.front());
+    });
+}
+
+Device Device::choose(std::string_view selector) {
+    return detail::opencl([&] {
+        const std::vector<cl::Device> devices = all_devices();
+        if (devices.empty()) throw Error(no_platform);
+
+        std::size_t index = 0;
+        const char* end = selector.data() + selector.size();
+        const auto [stop, error] = std::from_chars(selector.data(), end, index);
+        if (error == std::errc() && stop == end && index < devices.size())
+            return Device(devices[index]);
+
+        std::string known;
+        for (std::size_t i = 0; i < devices.size(); ++i) {
+            const DeviceInfo info = describe(devices[i]);
+            if (!selector.empty() && lower(info.name + "\n" + info.platform).find(lower(selector)) !=
+                                         std::string::npos)
+                return Device(devices[i]);
+            known += (i == 0 ? "" : ", ") + std::to_string(i) + " = " + info.name;
+        }
+        throw Error("no device is called '" + std::string(selector) + "'; there are: " + known);
+    });
+}
+
+Device::Device(const cl::Device& device) : state_(std::make_shared<detail::DeviceState>()) {
+    detail::opencl([&] {
+        state_->context = cl::Context(device);
+        state_->queue = cl::CommandQueue(state_->context, device, CL_QUEUE_PROFILING_ENABLE);
+        state_->device = device;
+        state_->info = describe(device);
+    });
+}
+
+Device::Device(cl::Context context, cl::CommandQueue queue)
+    : state_(std::make_shared<detail::DeviceState>()) {
+    detail::opencl([&] {
+        if (queue.getInfo<CL_QUEUE_CONTEXT>()() != context())
+            throw Error("the command queue belongs to another context");
+        if ((queue.getInfo<CL_QUEUE_PROPERTIES>() & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0)
+            throw Error("the command queue is out of order: cellist needs an in-order queue");
+        state_->device = queue.getInfo<CL_QUEUE_DEVICE>();
+        state_->info = describe(state_->device);
+        state_->context = std::move(context);
+        state_->queue = std::move(queue);
+    });
+}
+
+Device::Device(Device&&) noexcept = default;
+Device& Device::operator=(Device&&) noexcept = default;
+Device::~Device() = default;
+
+std::vector<DeviceInfo> Device::all() {
+    return detail::opencl([] {
+        std::vector<DeviceInfo> infos;
+        for (const cl::Device& device : all_devices()) infos.push_back(describe(device));
+        return infos;
+    });
+}
+
+const DeviceInfo& Device::info() const { return state_->info; }
+const cl::Context& Device::context() const { return state_->context; }
+const cl::CommandQueue& Device::queue() const { return state_->queue; }
+
+void Device::finish() const {
+    detail::opencl([&] { state_->queue.finish(); });
+}
+
+namespace detail {
+
+cl::Program DeviceState::program(const std::string& source, const std::string& options) {
+    const std::lock_guard lock(mutex_);
+    const std::string key = options + '\0' + source;
+    if (const auto known = programs_.find(key); known != programs_.end()) return known->second;
+    return opencl([&] {
+        cl::Program program(context, source);
+        try {
+            program.build(device, options.c_str());
+        } catch (const cl::Error& error) {
+            throw OpenClError(error.what(), error.err(),
+                              trimmed(program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device)));
+        }
+        return programs_.emplace(key, program).first->second;
+    });
+}
+
+}  // namespace detail
+}  // namespace cellist

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <mutex>
+#include <string>
+#include <unordered_map>
+
+#include <cellist/device.hpp>
+#include <cellist/error.hpp>
+
+namespace cellist::detail {
+
+/// What a Device and everything made from it share.
+struct DeviceState {
+    cl::Context context;
+    cl::CommandQueue queue;
+    cl::Device device;
+    DeviceInfo info;
+
+    /// The program with this source and these options; builds it the first time. Throws OpenClError
+    /// with the compiler's log. Any thread may call it.
+    cl::Program program(const std::string& source, const std::string& options);
+
+private:
+    std::mutex mutex_;
+    std::unordered_map<std::string, cl::Program> programs_;  ///< by options and source
+};
+
+/// Runs OpenCL calls and turns their failure into the library's error.
+template <class Call>
+decltype(auto) opencl(Call&& call) {
+    try {
+        return call();
+    } catch (const cl::Error& error) {
+        throw OpenClError(error.what(), error.err());
+    }
+}
+
+}  // namespace cellist::detail

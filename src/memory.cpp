@@ -1,0 +1,53 @@
+#include <cellist/detail/memory.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "device_state.hpp"
+
+namespace cellist::detail {
+
+Memory::Memory(std::shared_ptr<DeviceState> state, std::uint64_t count, std::size_t element_bytes,
+               const char* what)
+    : state_(std::move(state)) {
+    const std::uint64_t limit = state_->info.max_allocation_bytes;
+    if (count > limit / element_bytes)
+        throw Error(std::string(what) + " of " + std::to_string(count) + " elements of " +
+                    std::to_string(element_bytes) + " bytes exceeds this device's limit of " +
+                    std::to_string(limit) + " bytes per allocation");
+    size_bytes_ = count * element_bytes;
+    opencl([&] {
+        buffer_ = cl::Buffer(state_->context, CL_MEM_READ_WRITE,
+                             std::max<std::uint64_t>(size_bytes_, 1));
+    });
+}
+
+void Memory::write(const void* source, std::size_t bytes) {
+    if (bytes == 0) return;
+    opencl([&] { state_->queue.enqueueWriteBuffer(buffer_, CL_TRUE, 0, bytes, source); });
+}
+
+void Memory::read(void* target, std::size_t bytes) const {
+    if (bytes == 0) return;
+    opencl([&] { state_->queue.enqueueReadBuffer(buffer_, CL_TRUE, 0, bytes, target); });
+}
+
+void Memory::fill(const void* pattern, std::size_t pattern_bytes, std::size_t bytes) {
+    if (bytes == 0) return;
+    if (std::has_single_bit(pattern_bytes) && pattern_bytes <= 128) {
+        // The C++ bindings take the pattern as a type, not as bytes.
+        const cl_int code = clEnqueueFillBuffer(state_->queue(), buffer_(), pattern, pattern_bytes, 0,
+                                                bytes, 0, nullptr, nullptr);
+        if (code != CL_SUCCESS) throw OpenClError("clEnqueueFillBuffer", code);
+        return;
+    }
+    std::vector<std::byte> copies(bytes);
+    for (std::size_t at = 0; at < bytes; at += pattern_bytes)
+        std::memcpy(copies.data() + at, pattern, std::min(pattern_bytes, bytes - at));
+    write(copies.data(), bytes);
+}
+
+}  // namespace cellist::detail

@@ -1,0 +1,118 @@
+#include <cellist/detail/record_type.hpp>
+
+#include <algorithm>
+#include <map>
+
+#include <cellist/error.hpp>
+
+#include "cellist_kernels.hpp"
+
+namespace cellist::detail {
+
+namespace {
+
+bool same_layout(const RecordType& a, const RecordType& b) {
+    return a.size == b.size && a.alignment == b.alignment &&
+           std::equal(a.members.begin(), a.members.end(), b.members.begin(), b.members.end(),
+                      [](const RecordMember& x, const RecordMember& y) {
+                          return x.name == y.name && x.type == y.type && x.extents == y.extents &&
+                                 x.offset == y.offset;
+                      });
+}
+
+std::string struct_definition(const RecordType& record) {
+    std::string text = "typedef struct " + record.name + " {\n";
+    for (const RecordMember& member : record.members)
+        text += "    " + member.type + " " + member.name + member.extents + ";\n";
+    return text + "} " + record.name + ";\n";
+}
+
+/// Arrays of negative size where the device's compiler disagrees with the host's.
+std::string layout_checks(const RecordType& record) {
+    const auto check = [&](const std::string& what, const std::string& equality) {
+        return "typedef char cellist_layout_of_" + record.name + "_" + what + "[(" + equality +
+               ") ? 1 : -1];\n";
+    };
+    std::string text =
+        check("size", "sizeof(" + record.name + ") == " + std::to_string(record.size));
+    for (const RecordMember& member : record.members)
+        text += check(member.name, "__builtin_offsetof(" + record.name + ", " + member.name +
+                                       ") == " + std::to_string(member.offset));
+    return text;
+}
+
+/// Whether record a comes before record b: by the member that `key` means, then by all members.
+std::string order_definition(const RecordType& record) {
+    std::string text = "static inline int CELLIST_OVERLOAD cellist_record_before(" + record.name +
+                       " a, " + record.name + " b, uint key)\n{\n    ulong x = 0, y = 0;\n" +
+                       "    switch (key) {\n";
+    for (const RecordMember& member : record.members)
+        if (member.is_scalar)
+            text += "    case cellist_key_" + member.name + ": x = cellist_order(a." + member.name +
+                    "), y = cellist_order(b." + member.name + "); break;\n";
+    text += "    default: break;\n    }\n    if (x != y) return x < y;\n";
+    for (const RecordMember& member : record.members)
+        for (const std::string& path : member.scalars)
+            text += "    x = cellist_order(a." + path + "), y = cellist_order(b." + path +
+                    ");\n    if (x != y) return x < y;\n";
+    return text + "    return 0;\n}\n";
+}
+
+}  // namespace
+
+void Definitions::add(const RecordType& record) {
+    const auto known = std::find_if(records.begin(), records.end(),
+                                    [&](const RecordType& other) { return other.name == record.name; });
+    if (known == records.end())
+        records.push_back(record);
+    else if (!same_layout(*known, record))
+        throw Error("two different structs are called " + record.name +
+                    ": kernels know structs by their plain name");
+}
+
+void Definitions::add(const std::string& text) {
+    if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
+}
+
+void Definitions::add(const Definitions& other) {
+    for (const std::string& text : other.texts) add(text);
+    for (const RecordType& record : other.records) add(record);
+    needs_fp64 = needs_fp64 || other.needs_fp64;
+}
+
+std::string Definitions::source() const {
+    std::string text;
+    for (const std::string& definition : texts) text += definition + "\n";
+
+    // One number for each member name, 1 and up; 0 is no key.
+    std::map<std::string, std::size_t> keys;
+    for (const RecordType& record : records)
+        for (const RecordMember& member : record.members)
+            if (member.is_scalar) keys.emplace(member.name, keys.size() + 1);
+    for (const auto& [name, number] : keys)
+        text += "#define cellist_key_" + name + " " + std::to_string(number) + "u\n";
+
+    for (const RecordType& record : records) {
+        text += struct_definition(record) + layout_checks(record) + order_definition(record);
+        text += "CELLIST_DEFINE_NODE(" + record.name + ", " +
+                std::to_string(node_layout(record).alignment) + ")\n";
+        text += "CELLIST_DEFINE_RECORD(" + record.name + ")\n";
+    }
+    return text;
+}
+
+NodeLayout node_layout(const RecordType& record) {
+    constexpr std::size_t link = sizeof(cl_uint);
+    const auto up = [](std::size_t value, std::size_t multiple) {
+        return (value + multiple - 1) / multiple * multiple;
+    };
+    const std::size_t least = std::max(record.alignment, link);
+    const std::size_t size = up(up(record.size, link) + link, least);
+    // A node of 8 or 16 bytes, or a multiple, can be moved in one go if it is aligned to that.
+    const std::size_t natural = size % 16 == 0 ? 16 : size % 8 == 0 ? 8 : 4;
+    return {size, std::max(least, natural)};
+}
+
+std::string glm_source() { return std::string(kernels::glm_clh); }
+
+}  // namespace cellist::detail

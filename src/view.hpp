@@ -1,0 +1,5 @@
+#pragma once
+
+#include <cellist/opencl.hpp>
+
+#include "cellist/view.h"
