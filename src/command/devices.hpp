@@ -1,0 +1,10 @@
+#pragma once
+
+#include <iosfwd>
+
+namespace cellist::command {
+
+/// Prints a table of all devices. Returns the exit status: 1 if there is none.
+int devices(std::ostream& out);
+
+}  // namespace cellist::command

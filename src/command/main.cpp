@@ -1,0 +1,69 @@
+// The `cellist` command: what the OpenCL devices of this machine are, and whether cellist works on
+// them.
+
+#include <cstring>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <cellist/cellist.hpp>
+
+#include "devices.hpp"
+#include "selftest.hpp"
+
+namespace {
+
+constexpr const char* usage =
+    "usage: cellist devices                  the OpenCL devices of this machine\n"
+    "       cellist selftest [--device D]    insert, grow, sort and validate against the CPU\n"
+    "       cellist --help | --version\n"
+    "\n"
+    "D is an index or a part of a name, as `cellist devices` shows them. Without it the\n"
+    "environment variable CELLIST_DEVICE decides, then the first GPU, then the first device.\n"
+    "Exit status: 0 all is well, 1 a test failed or a device is missing, 2 wrong usage.\n";
+
+int wrong_usage(const std::string& what) {
+    std::cerr << "cellist: " << what << "\n\n" << usage;
+    return 2;
+}
+
+int run(const std::vector<std::string>& arguments) {
+    if (arguments.empty()) return wrong_usage("no command given");
+    const std::string& command = arguments[0];
+    if (command == "--help" || command == "-h") {
+        std::cout << usage;
+        return 0;
+    }
+    if (command == "--version") {
+        std::cout << "cellist " CELLIST_VERSION "\n";
+        return 0;
+    }
+    if (command == "devices") {
+        if (arguments.size() > 1) return wrong_usage("unknown argument '" + arguments[1] + "'");
+        return cellist::command::devices(std::cout);
+    }
+    if (command == "selftest") {
+        std::optional<std::string> selector;
+        for (std::size_t i = 1; i < arguments.size(); ++i) {
+            if (arguments[i] == "--device" && i + 1 < arguments.size())
+                selector = arguments[++i];
+            else
+                return wrong_usage("unknown or incomplete argument '" + arguments[i] + "'");
+        }
+        return cellist::command::selftest(
+            selector ? cellist::Device::choose(*selector) : cellist::Device::choose(), std::cout);
+    }
+    return wrong_usage("unknown command '" + command + "'");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return run({argv + 1, argv + argc});
+    } catch (const std::exception& error) {
+        std::cerr << "cellist: " << error.what() << '\n';
+        return 1;
+    }
+}
