@@ -1,0 +1,62 @@
+# Configures, builds and runs one outside project against this cellist.
+#
+#   way          find_package, fetch_content or add_subdirectory
+#   source_dir   this repository
+#   build_dir    a finished build of it, which find_package installs from
+#   work_dir     directory of this test; emptied first
+#   config, generator, make_program, cxx_compiler, cxx_flags   as in that build
+#
+# An installed package must work where it was moved to and without a trace of where it came from,
+# so it is installed to one prefix, moved to another, and used there.
+cmake_minimum_required(VERSION 3.25)
+
+function(run)
+    execute_process(COMMAND ${ARGN} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+
+file(REMOVE_RECURSE "${work_dir}")
+file(MAKE_DIRECTORY "${work_dir}")
+
+if(way STREQUAL "find_package")
+    set(first_prefix "${work_dir}/first")
+    set(prefix "${work_dir}/moved")
+    run("${CMAKE_COMMAND}" --install "${build_dir}" --config "${config}" --prefix "${first_prefix}")
+    file(RENAME "${first_prefix}" "${prefix}")
+
+    file(GLOB_RECURSE package_files "${prefix}/*.cmake")
+    if(NOT package_files)
+        message(FATAL_ERROR "no CMake package was installed")
+    endif()
+    foreach(file IN LISTS package_files)
+        file(READ "${file}" text)
+        foreach(trace "${source_dir}" "${first_prefix}" "-Werror" "cellist_warnings")
+            string(FIND "${text}" "${trace}" position)
+            if(NOT position EQUAL -1)
+                message(FATAL_ERROR "${file} holds `${trace}`")
+            endif()
+        endforeach()
+    endforeach()
+
+    set(cellist_location "-DCMAKE_PREFIX_PATH=${prefix}")
+else()
+    set(cellist_location "-DCELLIST_SOURCE_DIR=${source_dir}")
+endif()
+
+run("${CMAKE_COMMAND}" -S "${CMAKE_CURRENT_LIST_DIR}/${way}" -B "${work_dir}/build" -G "${generator}"
+    "-DCMAKE_MAKE_PROGRAM=${make_program}"
+    "-DCMAKE_CXX_COMPILER=${cxx_compiler}"
+    "-DCMAKE_CXX_FLAGS=${cxx_flags}"
+    "-DCMAKE_BUILD_TYPE=${config}"
+    "${cellist_location}")
+run("${CMAKE_COMMAND}" --build "${work_dir}/build" --config "${config}")
+
+find_program(consumer consumer NO_DEFAULT_PATH NO_CACHE REQUIRED
+    PATHS "${work_dir}/build" "${work_dir}/build/${config}")
+run("${consumer}")
+
+if(way STREQUAL "find_package")
+    find_program(command cellist NO_DEFAULT_PATH NO_CACHE PATHS "${prefix}/bin")
+    if(command)
+        run("${command}" devices)
+    endif()
+endif()
