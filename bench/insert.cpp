@@ -2,11 +2,11 @@
 // ceilings in the same run: the same stores alone, and stores with the exchange of the head but
 // without an allocation.
 
-#include <benchmark/benchmark.h>
-
 #include <cstdlib>
 #include <iostream>
 #include <string>
+
+#include <benchmark/benchmark.h>
 
 #include <cellist/cellist.hpp>
 

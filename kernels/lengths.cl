@@ -5,13 +5,10 @@
 // One work-item a cell; the range is padded to whole work-groups.
 #include <cellist/lists.clh>
 
-kernel void cellist_lengths(CELLIST_LISTS(CELLIST_RECORD, lists), global uint *lengths)
-{
+kernel void cellist_lengths(CELLIST_LISTS(CELLIST_RECORD, lists), global uint* lengths) {
     const uint cell = get_global_id(0);
-    if (cell >= cellist_cells(lists))
-        return;
+    if (cell >= cellist_cells(lists)) return;
     uint length = 0;
-    cellist_for_each(lists, cell, node)
-        ++length;
+    cellist_for_each(lists, cell, node) ++length;
     lengths[cell] = length;
 }

@@ -8,22 +8,18 @@
 // cellist_sort_key(CELLIST_RECORD), which maps the key to an unsigned integer of the same order.
 #include <cellist/lists.clh>
 
-static inline int cellist_sort_before(CELLIST_LISTS(CELLIST_RECORD, lists), uint a, uint b)
-{
+static inline int cellist_sort_before(CELLIST_LISTS(CELLIST_RECORD, lists), uint a, uint b) {
     const ulong x = cellist_sort_key(cellist_get(lists, a));
     const ulong y = cellist_sort_key(cellist_get(lists, b));
-    if (x != y)
-        return x < y;
+    if (x != y) return x < y;
     return cellist_record_before(cellist_get(lists, a), cellist_get(lists, b), 0);
 }
 
-static inline uint cellist_sort_merge(CELLIST_LISTS(CELLIST_RECORD, lists), uint a, uint b)
-{
+static inline uint cellist_sort_merge(CELLIST_LISTS(CELLIST_RECORD, lists), uint a, uint b) {
     uint first = CELLIST_NONE;
     uint last = CELLIST_NONE;
     for (uint step = 0; step < lists_view.capacity_nodes; ++step) {
-        if (a == CELLIST_NONE || b == CELLIST_NONE)
-            break;
+        if (a == CELLIST_NONE || b == CELLIST_NONE) break;
         uint least = a;
         if (cellist_sort_before(CELLIST_PASS(lists), b, a)) {
             least = b;
@@ -38,20 +34,16 @@ static inline uint cellist_sort_merge(CELLIST_LISTS(CELLIST_RECORD, lists), uint
         last = least;
     }
     const uint rest = a == CELLIST_NONE ? b : a;
-    if (last == CELLIST_NONE)
-        return rest;
+    if (last == CELLIST_NONE) return rest;
     lists_nodes[last].next = rest;
     return first;
 }
 
-kernel void cellist_sort(CELLIST_LISTS(CELLIST_RECORD, lists))
-{
+kernel void cellist_sort(CELLIST_LISTS(CELLIST_RECORD, lists)) {
     const uint cell = get_global_id(0);
-    if (cell >= cellist_cells(lists))
-        return;
+    if (cell >= cellist_cells(lists)) return;
     const uint head = lists_heads[cell];
-    if (head == CELLIST_NONE || lists_nodes[head].next == CELLIST_NONE)
-        return;
+    if (head == CELLIST_NONE || lists_nodes[head].next == CELLIST_NONE) return;
 
     uint pending[32];
     uint used = 0;
@@ -64,8 +56,7 @@ kernel void cellist_sort(CELLIST_LISTS(CELLIST_RECORD, lists))
             node = cellist_sort_merge(CELLIST_PASS(lists), pending[level], node);
             pending[level] = CELLIST_NONE;
         }
-        if (level == used)
-            ++used;
+        if (level == used) ++used;
         pending[level] = node;
         node = next;
     }

@@ -16,24 +16,20 @@ typedef struct cellist_findings {
     uint first_bad_cell;
 } cellist_findings;
 
-static inline int cellist_is_allocated(volatile global cellist_shard *shards,
-                                       const cellist_view view, uint node)
-{
-    if (node >= view.capacity_nodes)
-        return 0;
+static inline int cellist_is_allocated(volatile global cellist_shard* shards,
+                                       const cellist_view view, uint node) {
+    if (node >= view.capacity_nodes) return 0;
     const uint block = node >> CELLIST_BLOCK_BITS;
     const uint shard = block & ((1u << view.shard_bits) - 1u);
-    const uint n = ((block >> view.shard_bits) << CELLIST_BLOCK_BITS) |
-                   (node & (CELLIST_BLOCK_NODES - 1u));
+    const uint n =
+        ((block >> view.shard_bits) << CELLIST_BLOCK_BITS) | (node & (CELLIST_BLOCK_NODES - 1u));
     return n < shards[shard].allocated;
 }
 
-kernel void cellist_validate(CELLIST_LISTS(CELLIST_RECORD, lists), volatile global uint *reached,
-                             volatile global cellist_findings *findings)
-{
+kernel void cellist_validate(CELLIST_LISTS(CELLIST_RECORD, lists), volatile global uint* reached,
+                             volatile global cellist_findings* findings) {
     const uint cell = get_global_id(0);
-    if (cell >= cellist_cells(lists))
-        return;
+    if (cell >= cellist_cells(lists)) return;
     uint length = 0;
     int bad = 0;
     uint node = lists_heads[cell];
@@ -52,8 +48,6 @@ kernel void cellist_validate(CELLIST_LISTS(CELLIST_RECORD, lists), volatile glob
         ++length;
         node = lists_nodes[node].next;
     }
-    if (length)
-        atomic_add(&findings->reached_nodes, length);
-    if (bad)
-        atomic_min(&findings->first_bad_cell, cell);
+    if (length) atomic_add(&findings->reached_nodes, length);
+    if (bad) atomic_min(&findings->first_bad_cell, cell);
 }

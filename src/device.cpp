@@ -1,9 +1,9 @@
-#include <cellist/device.hpp>
-
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cstdlib>
+
+#include <cellist/device.hpp>
 
 #include "device_state.hpp"
 
@@ -20,9 +20,11 @@ std::vector<cl::Device> all_devices() {
     if (clGetPlatformIDs(count, ids.data(), nullptr) != CL_SUCCESS) return {};
     std::vector<cl::Device> devices;
     for (const cl_platform_id platform : ids) {
-        if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 0, nullptr, &count) != CL_SUCCESS) continue;
+        if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 0, nullptr, &count) != CL_SUCCESS)
+            continue;
         std::vector<cl_device_id> handles(count);
-        if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, count, handles.data(), nullptr) != CL_SUCCESS)
+        if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, count, handles.data(), nullptr) !=
+            CL_SUCCESS)
             continue;
         for (const cl_device_id handle : handles) devices.emplace_back(handle, true);
     }
@@ -97,8 +99,8 @@ Device Device::choose(std::string_view selector) {
         std::string known;
         for (std::size_t i = 0; i < devices.size(); ++i) {
             const DeviceInfo info = describe(devices[i]);
-            if (!selector.empty() && lower(info.name + "\n" + info.platform).find(lower(selector)) !=
-                                         std::string::npos)
+            if (!selector.empty() &&
+                lower(info.name + "\n" + info.platform).find(lower(selector)) != std::string::npos)
                 return Device(devices[i]);
             known += (i == 0 ? "" : ", ") + std::to_string(i) + " = " + info.name;
         }

@@ -16,8 +16,9 @@ OpenClError::OpenClError(std::string call, cl_int code, std::string log)
     : Error(message(call, code, log)), call_(std::move(call)), code_(code), log_(std::move(log)) {}
 
 const char* error_name(cl_int code) {
-#define CELLIST_CASE(name) \
-    case name: return #name;
+#define CELLIST_CASE(name)                                                                         \
+    case name:                                                                                     \
+        return #name;
     switch (code) {
         CELLIST_CASE(CL_SUCCESS)
         CELLIST_CASE(CL_DEVICE_NOT_FOUND)
@@ -78,8 +79,10 @@ const char* error_name(cl_int code) {
         CELLIST_CASE(CL_INVALID_COMPILER_OPTIONS)
         CELLIST_CASE(CL_INVALID_LINKER_OPTIONS)
         CELLIST_CASE(CL_INVALID_DEVICE_PARTITION_COUNT)
-        case -1001: return "CL_PLATFORM_NOT_FOUND_KHR";
-        default: return "unknown error";
+        case -1001:
+            return "CL_PLATFORM_NOT_FOUND_KHR";
+        default:
+            return "unknown error";
     }
 #undef CELLIST_CASE
 }

@@ -1,9 +1,9 @@
-#include <cellist/kernel.hpp>
-
 #include <algorithm>
 #include <map>
 #include <numeric>
 #include <regex>
+
+#include <cellist/kernel.hpp>
 
 #include "cellist_kernels.hpp"
 #include "device_state.hpp"
@@ -20,7 +20,7 @@ using detail::opencl;
 struct Parameter {
     std::string declaration;  ///< e.g. "uint count"
     Arguments::Kind kind = Arguments::Kind::value;
-    std::size_t size = 0;     ///< in bytes; 0 if not known
+    std::size_t size = 0;  ///< in bytes; 0 if not known
 };
 
 /// Takes the library's own #include lines out of a source, since its text stands before it already,
@@ -30,7 +30,8 @@ std::string without_library_includes(const std::string& text, bool& uses_glm) {
                                     std::regex::multiline);
     std::string out;
     auto rest = text.begin();
-    for (std::sregex_iterator match(text.begin(), text.end(), include), end; match != end; ++match) {
+    for (std::sregex_iterator match(text.begin(), text.end(), include), end; match != end;
+         ++match) {
         const std::string name = (*match)[1];
         if (name != "lists" && name != "glm") continue;
         uses_glm = uses_glm || name == "glm";
@@ -93,7 +94,8 @@ std::string text_of(const cl::Kernel& kernel, cl_uint index, cl_kernel_arg_info 
     std::size_t size = 0;
     if (clGetKernelArgInfo(kernel(), index, what, 0, nullptr, &size) != CL_SUCCESS) return {};
     std::string text(size, '\0');
-    if (clGetKernelArgInfo(kernel(), index, what, size, text.data(), nullptr) != CL_SUCCESS) return {};
+    if (clGetKernelArgInfo(kernel(), index, what, size, text.data(), nullptr) != CL_SUCCESS)
+        return {};
     return text.substr(0, text.find('\0'));
 }
 
@@ -119,10 +121,14 @@ std::vector<Parameter> parameters_of(const cl::Kernel& kernel,
 
 const char* kind_name(Arguments::Kind kind) {
     switch (kind) {
-        case Arguments::Kind::value: return "a value";
-        case Arguments::Kind::memory: return "a buffer or image";
-        case Arguments::Kind::sampler: return "a sampler";
-        case Arguments::Kind::local: return "local memory";
+        case Arguments::Kind::value:
+            return "a value";
+        case Arguments::Kind::memory:
+            return "a buffer or image";
+        case Arguments::Kind::sampler:
+            return "a sampler";
+        case Arguments::Kind::local:
+            return "local memory";
     }
     return "";
 }
@@ -131,9 +137,12 @@ const char* kind_name(Arguments::Kind kind) {
 cl::NDRange local_range(const Range& range, std::size_t limit) {
     if (range.local[0] != 0) {
         switch (range.dimensions) {
-            case 1: return {range.local[0]};
-            case 2: return {range.local[0], range.local[1]};
-            default: return {range.local[0], range.local[1], range.local[2]};
+            case 1:
+                return {range.local[0]};
+            case 2:
+                return {range.local[0], range.local[1]};
+            default:
+                return {range.local[0], range.local[1], range.local[2]};
         }
     }
     const std::size_t most = std::min<std::size_t>(limit, 256);
@@ -146,9 +155,12 @@ cl::NDRange local_range(const Range& range, std::size_t limit) {
 
 cl::NDRange global_range(const Range& range) {
     switch (range.dimensions) {
-        case 1: return {range.global[0]};
-        case 2: return {range.global[0], range.global[1]};
-        default: return {range.global[0], range.global[1], range.global[2]};
+        case 1:
+            return {range.global[0]};
+        case 2:
+            return {range.global[0], range.global[1]};
+        default:
+            return {range.global[0], range.global[1], range.global[2]};
     }
 }
 
@@ -160,6 +172,21 @@ struct Kernel::Impl {
     cl::Kernel kernel;
     std::vector<Parameter> parameters;
     std::size_t work_group_limit = 0;
+
+    /// Throws Error if an argument does not fit the parameter. Drivers do not all check this: PoCL
+    /// takes a value of any size.
+    void check(cl_uint index, const Arguments::Argument& argument) const {
+        const Parameter& parameter = parameters[index];
+        const bool right_kind = argument.kind == parameter.kind;
+        if (right_kind && (parameter.size == 0 || argument.size == parameter.size)) return;
+        const std::string where = "kernel " + name + ", parameter " + std::to_string(index) + " '" +
+                                  parameter.declaration + "': takes ";
+        if (!right_kind)
+            throw Error(where + kind_name(parameter.kind) + ", was given " +
+                        kind_name(argument.kind));
+        throw Error(where + std::to_string(parameter.size) + " bytes, was given " +
+                    std::to_string(argument.size));
+    }
 };
 
 Kernel::Kernel(std::shared_ptr<detail::DeviceState> device, const Source& source,
@@ -189,18 +216,8 @@ cl::Event Kernel::enqueue(const Range& range, const Arguments& arguments) {
                     " parameters and was given " + std::to_string(list.size()) +
                     " (a container counts as 4)");
     for (cl_uint i = 0; i < list.size(); ++i) {
-        const Parameter& parameter = impl_->parameters[i];
-        const std::string where = "kernel " + impl_->name + ", parameter " + std::to_string(i) + " '" +
-                                  parameter.declaration + "'";
-        if (list[i].kind != parameter.kind)
-            throw Error(where + ": takes " + kind_name(parameter.kind) + ", was given " +
-                        kind_name(list[i].kind));
-        if (parameter.size != 0 && list[i].size != parameter.size)
-            throw Error(where + ": takes " + std::to_string(parameter.size) + " bytes, was given " +
-                        std::to_string(list[i].size));
-        opencl([&] {
-            impl_->kernel.setArg(i, list[i].size, arguments.data(list[i]));
-        });
+        impl_->check(i, list[i]);
+        opencl([&] { impl_->kernel.setArg(i, list[i].size, arguments.data(list[i])); });
     }
 
     cl::Event event;
@@ -209,10 +226,9 @@ cl::Event Kernel::enqueue(const Range& range, const Arguments& arguments) {
         if (std::find(extents.begin(), extents.end(), 0u) != extents.end())
             impl_->device->queue.enqueueMarkerWithWaitList(nullptr, &event);
         else
-            impl_->device->queue.enqueueNDRangeKernel(impl_->kernel, cl::NullRange,
-                                                      global_range(range),
-                                                      local_range(range, impl_->work_group_limit),
-                                                      nullptr, &event);
+            impl_->device->queue.enqueueNDRangeKernel(
+                impl_->kernel, cl::NullRange, global_range(range),
+                local_range(range, impl_->work_group_limit), nullptr, &event);
     });
     return event;
 }

@@ -1,8 +1,8 @@
-#include <cellist/detail/lists_core.hpp>
-
 #include <algorithm>
 #include <limits>
 #include <numeric>
+
+#include <cellist/detail/lists_core.hpp>
 
 #include "cellist_kernels.hpp"
 #include "device_state.hpp"
@@ -115,6 +115,17 @@ void ListsCore::clear() {
     shards_.fill(&zero, sizeof zero, shards_.size_bytes());
 }
 
+/// Leaves the lists empty, whatever failed before. A pool that could not be allocated becomes one of
+/// capacity 0, which grows in the next build.
+void ListsCore::empty_after_failure() noexcept {
+    try {
+        if (nodes_.cl()() == nullptr) allocate_pool(0);
+        clear();
+    } catch (const Error&) {
+        // The device is lost; the error that is under way says why.
+    }
+}
+
 BuildReport ListsCore::build(const std::function<void()>& insert) {
     BuildReport report;
     try {
@@ -145,10 +156,7 @@ BuildReport ListsCore::build(const std::function<void()>& insert) {
             allocate_pool(demand);
         }
     } catch (...) {
-        // The lists are empty again, whatever failed. A pool that could not be allocated leaves a
-        // container of capacity 0, which grows in the next build.
-        if (nodes_.cl()() == nullptr) allocate_pool(0);
-        clear();
+        empty_after_failure();
         throw;
     }
 }
@@ -173,9 +181,10 @@ Kernel& ListsCore::kernel(const std::string& name, std::string_view source,
     const std::string record = definitions_.records.back().name;
     std::string text = "#define CELLIST_RECORD " + record + "\n";
     if (!key.empty())
-        text += "static inline ulong cellist_sort_key(CELLIST_RECORD record)\n{\n    return "
-                "cellist_order(\n#line 1 \"sort expression\"\n" +
-                key + "\n);\n}\n";
+        text +=
+            "static inline ulong cellist_sort_key(CELLIST_RECORD record)\n{\n    return "
+            "cellist_order(\n#line 1 \"sort expression\"\n" +
+            key + "\n);\n}\n";
     text += "#line 1 \"" + name + ".cl\"\n" + std::string(source);
     return kernels_
         .emplace(id, Kernel(device_, Source{.text = std::move(text)}, name, definitions_))
@@ -185,13 +194,12 @@ Kernel& ListsCore::kernel(const std::string& name, std::string_view source,
 Range ListsCore::cell_range() const { return Range::padded(shape_.cells()); }
 
 void ListsCore::add_to(Arguments& arguments) const {
-    const cellist_view view{{static_cast<cl_uint>(shape_.extent(0)),
-                             static_cast<cl_uint>(shape_.extent(1)),
-                             static_cast<cl_uint>(shape_.extent(2)),
-                             static_cast<cl_uint>(shape_.extent(3))},
-                            static_cast<cl_uint>(shape_.cells()),
-                            static_cast<cl_uint>(capacity_nodes_),
-                            shard_bits_};
+    const cellist_view view{
+        {static_cast<cl_uint>(shape_.extent(0)), static_cast<cl_uint>(shape_.extent(1)),
+         static_cast<cl_uint>(shape_.extent(2)), static_cast<cl_uint>(shape_.extent(3))},
+        static_cast<cl_uint>(shape_.cells()),
+        static_cast<cl_uint>(capacity_nodes_),
+        shard_bits_};
     arguments.add(nodes_.cl());
     arguments.add(heads_.cl());
     arguments.add(shards_.cl());
@@ -234,7 +242,8 @@ std::vector<std::uint64_t> ListsCore::download(
     const std::function<void*(std::uint64_t)>& allocate) const {
     const std::vector<cl_uint> lengths = cell_lengths();
     std::vector<std::uint64_t> offsets(lengths.size() + 1, 0);
-    std::partial_sum(lengths.begin(), lengths.end(), offsets.begin() + 1, std::plus<std::uint64_t>());
+    std::partial_sum(lengths.begin(), lengths.end(), offsets.begin() + 1,
+                     std::plus<std::uint64_t>());
 
     const std::size_t record_bytes = definitions_.records.back().size;
     auto* target = static_cast<std::byte*>(allocate(offsets.back()));

@@ -1,10 +1,10 @@
-#include <cellist/detail/memory.hpp>
-
 #include <algorithm>
 #include <bit>
 #include <cstring>
 #include <string>
 #include <vector>
+
+#include <cellist/detail/memory.hpp>
 
 #include "device_state.hpp"
 
@@ -20,8 +20,8 @@ Memory::Memory(std::shared_ptr<DeviceState> state, std::uint64_t count, std::siz
                     std::to_string(limit) + " bytes per allocation");
     size_bytes_ = count * element_bytes;
     opencl([&] {
-        buffer_ = cl::Buffer(state_->context, CL_MEM_READ_WRITE,
-                             std::max<std::uint64_t>(size_bytes_, 1));
+        buffer_ =
+            cl::Buffer(state_->context, CL_MEM_READ_WRITE, std::max<std::uint64_t>(size_bytes_, 1));
     });
 }
 
@@ -39,8 +39,8 @@ void Memory::fill(const void* pattern, std::size_t pattern_bytes, std::size_t by
     if (bytes == 0) return;
     if (std::has_single_bit(pattern_bytes) && pattern_bytes <= 128) {
         // The C++ bindings take the pattern as a type, not as bytes.
-        const cl_int code = clEnqueueFillBuffer(state_->queue(), buffer_(), pattern, pattern_bytes, 0,
-                                                bytes, 0, nullptr, nullptr);
+        const cl_int code = clEnqueueFillBuffer(state_->queue(), buffer_(), pattern, pattern_bytes,
+                                                0, bytes, 0, nullptr, nullptr);
         if (code != CL_SUCCESS) throw OpenClError("clEnqueueFillBuffer", code);
         return;
     }

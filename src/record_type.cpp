@@ -1,8 +1,7 @@
-#include <cellist/detail/record_type.hpp>
-
 #include <algorithm>
 #include <map>
 
+#include <cellist/detail/record_type.hpp>
 #include <cellist/error.hpp>
 
 #include "cellist_kernels.hpp"
@@ -61,8 +60,9 @@ std::string order_definition(const RecordType& record) {
 }  // namespace
 
 void Definitions::add(const RecordType& record) {
-    const auto known = std::find_if(records.begin(), records.end(),
-                                    [&](const RecordType& other) { return other.name == record.name; });
+    const auto known = std::find_if(records.begin(), records.end(), [&](const RecordType& other) {
+        return other.name == record.name;
+    });
     if (known == records.end())
         records.push_back(record);
     else if (!same_layout(*known, record))

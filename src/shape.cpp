@@ -31,8 +31,8 @@ Shape::Shape(std::initializer_list<std::uint64_t> extents) : dimensions_(extents
 
 std::uint64_t Shape::cell(std::initializer_list<std::uint64_t> position) const {
     if (position.size() > dimensions_)
-        throw Error("a position of " + std::to_string(position.size()) + " coordinates in a shape of " +
-                    to_string());
+        throw Error("a position of " + std::to_string(position.size()) +
+                    " coordinates in a shape of " + to_string());
     std::uint64_t index = 0;
     std::uint64_t stride = 1;
     std::size_t dimension = 0;

@@ -39,7 +39,8 @@ std::vector<Block> code_blocks(const fs::path& path) {
         Block block{"", i + 1, {}};
         const std::string mark = "<!-- code: ";
         if (i > 0 && lines[i - 1].rfind(mark, 0) == 0)
-            block.source = lines[i - 1].substr(mark.size(), lines[i - 1].find(" -->") - mark.size());
+            block.source =
+                lines[i - 1].substr(mark.size(), lines[i - 1].find(" -->") - mark.size());
         for (++i; i < lines.size() && lines[i] != "```"; ++i) block.code.push_back(lines[i]);
         blocks.push_back(block);
     }
@@ -60,8 +61,8 @@ TEST_CASE("every block of code in the documentation is quoted from a program", "
     std::size_t blocks = 0;
     for (const fs::path& document : documents()) {
         for (const Block& block : code_blocks(document)) {
-            INFO(document.filename().string() << ", line " << block.line << ", quoted from '"
-                                              << block.source << "'");
+            INFO(document.filename().string()
+                 << ", line " << block.line << ", quoted from '" << block.source << "'");
             const auto lines = trimmed_lines(fs::path(CELLIST_SOURCE_DIR) / block.source);
             const auto found =
                 std::search(lines.begin(), lines.end(), block.code.begin(), block.code.end());

@@ -44,8 +44,8 @@ void grow_within_a_budget(const cellist::Device& device) {
 }
 
 void stop(const cellist::Device& device) {
-    cellist::Lists<Sample> samples(
-        device, {100}, {.overflow = cellist::Overflow::stop, .capacity_nodes = 1000});
+    cellist::Lists<Sample> samples(device, {100},
+                                   {.overflow = cellist::Overflow::stop, .capacity_nodes = 1000});
     cellist::Kernel sample(device, source, "sample", samples);
     try {
         samples.build(sample, 1001, cl_uint{100});
@@ -57,8 +57,8 @@ void stop(const cellist::Device& device) {
 }
 
 void drop(const cellist::Device& device) {
-    cellist::Lists<Sample> samples(
-        device, {100}, {.overflow = cellist::Overflow::drop, .capacity_nodes = 1000});
+    cellist::Lists<Sample> samples(device, {100},
+                                   {.overflow = cellist::Overflow::drop, .capacity_nodes = 1000});
     cellist::Kernel sample(device, source, "sample", samples);
 
     cellist::BuildReport report = samples.build(sample, 50'000, cl_uint{120});

@@ -17,7 +17,8 @@ public:
         : shape_(shape), offsets_(std::move(offsets)), records_(std::move(records)) {}
 
     /// The records of the cell at a position. Throws Error if it is outside of the shape.
-    [[nodiscard]] std::span<const T> operator[](std::initializer_list<std::uint64_t> position) const {
+    [[nodiscard]] std::span<const T> operator[](
+        std::initializer_list<std::uint64_t> position) const {
         return cell(shape_.cell(position));
     }
     /// The records of the cell with an index in 0 ... cells() - 1.

@@ -26,10 +26,10 @@ struct Lengths {
 
 /// What Lists::validate() found. All counts are 0 in a sound container.
 struct Validation {
-    std::uint64_t broken_links = 0;   ///< heads and links to a node that was never allocated
-    std::uint64_t repeated_nodes = 0; ///< links to a node that another link reached: cycles, shared tails
-    std::uint64_t lost_nodes = 0;     ///< allocated nodes that no head leads to
-    std::uint64_t first_bad_cell = 0; ///< lowest cell with a broken or repeated link; valid if there is one
+    std::uint64_t broken_links = 0;    ///< links to a node that was never allocated
+    std::uint64_t repeated_nodes = 0;  ///< links to a node that is in a list already: cycles, too
+    std::uint64_t lost_nodes = 0;      ///< allocated nodes that no head leads to
+    std::uint64_t first_bad_cell = 0;  ///< lowest cell with a broken or repeated link, if any
 
     /// True if every allocated node is reached from exactly one head, exactly once.
     [[nodiscard]] bool ok() const {

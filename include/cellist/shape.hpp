@@ -23,7 +23,9 @@ public:
 
     [[nodiscard]] std::size_t dimensions() const { return dimensions_; }
     /// Cells along a dimension; 1 for dimensions that the shape does not have.
-    [[nodiscard]] std::uint64_t extent(std::size_t dimension) const { return extents_.at(dimension); }
+    [[nodiscard]] std::uint64_t extent(std::size_t dimension) const {
+        return extents_.at(dimension);
+    }
     [[nodiscard]] std::uint64_t cells() const { return cells_; }
 
     /// The index of the cell at a position; missing coordinates are 0. Throws Error if there are

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <string>
 #include <tuple>
@@ -28,8 +29,7 @@
             #type CELLIST_FOR_EACH(CELLIST_STRUCT_MEMBER, type, __VA_ARGS__));                     \
     }                                                                                              \
     static_assert(std::is_trivially_copyable_v<type> && std::is_standard_layout_v<type>,           \
-                  "CELLIST_STRUCT: " #type                                                         \
-                  " must be trivially copyable and of standard layout");                           \
+                  "CELLIST_STRUCT: " #type " must be trivially copyable and of standard layout");  \
     static_assert(::cellist::detail::is_plain_name(#type),                                         \
                   "CELLIST_STRUCT stands in the struct's own namespace, with its plain name");     \
     static_assert(cellist_describe(static_cast<const type*>(nullptr)).matches_device_layout(),     \
@@ -38,9 +38,8 @@
                   "types that are aligned as on the device")
 
 #define CELLIST_STRUCT_MEMBER(type, member)                                                        \
-    , ::cellist::detail::Member<type, decltype(type::member)> {                                    \
-        #member, &type::member, offsetof(type, member)                                             \
-    }
+    , ::cellist::detail::member_of<type, decltype(type::member)>(#member, &type::member,           \
+                                                                 offsetof(type, member))
 
 namespace cellist {
 
@@ -81,6 +80,11 @@ struct Member {
     using type = M;
 };
 
+template <class Owner, class M>
+constexpr Member<Owner, M> member_of(const char* name, M Owner::*pointer, std::size_t offset) {
+    return {name, pointer, offset};
+}
+
 template <class T, class... Members>
 struct Description {
     const char* name;
@@ -94,7 +98,8 @@ struct Description {
         std::apply(
             [&](const auto&... member) {
                 (([&] {
-                     using OnDevice = DeviceType<typename std::remove_cvref_t<decltype(member)>::type>;
+                     using OnDevice =
+                         DeviceType<typename std::remove_cvref_t<decltype(member)>::type>;
                      end = round_up(end, OnDevice::alignment);
                      same = same && end == member.offset;
                      end += OnDevice::size;
@@ -113,7 +118,9 @@ constexpr Description<T, Members...> describe(const char* name, Members... membe
 }
 
 template <class T>
-concept Adapted = requires { cellist_describe(static_cast<const T*>(nullptr)); };
+concept Adapted = requires {
+    cellist_describe(static_cast<const T*>(nullptr));
+};
 
 template <Adapted T>
 inline constexpr auto description = cellist_describe(static_cast<const T*>(nullptr));
@@ -130,16 +137,15 @@ constexpr const char* scalar_name() {
     else if constexpr (std::is_same_v<T, double>)
         return "double";
     else if constexpr (std::is_integral_v<T>) {
-        constexpr std::array names{"char", "uchar", "short", "ushort", "int", "uint", "long", "ulong"};
-        constexpr std::size_t size_class =
-            sizeof(T) == 1 ? 0 : sizeof(T) == 2 ? 1 : sizeof(T) == 4 ? 2 : 3;
-        return names[2 * size_class + (std::is_unsigned_v<T> ? 1 : 0)];
+        constexpr std::array names{"char", "uchar", "short", "ushort",
+                                   "int",  "uint",  "long",  "ulong"};
+        return names[2 * (std::bit_width(sizeof(T)) - 1) + (std::is_unsigned_v<T> ? 1 : 0)];
     } else
         return nullptr;
 }
 
 template <class T>
-concept Scalar = scalar_name<T>() != nullptr;
+concept Scalar = (scalar_name<T>() != nullptr);
 
 }  // namespace detail
 
@@ -261,7 +267,8 @@ std::string member_name(M T::*pointer) {
     std::apply(
         [&](const auto&... member) {
             (([&] {
-                 if constexpr (std::is_same_v<typename std::remove_cvref_t<decltype(member)>::type, M>)
+                 if constexpr (std::is_same_v<typename std::remove_cvref_t<decltype(member)>::type,
+                                              M>)
                      if (member.pointer == pointer) name = member.name;
              }()),
              ...);

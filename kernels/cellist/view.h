@@ -37,12 +37,12 @@ typedef struct cellist_view {
 // The counters of one shard, alone in its cache line. The struct behind the last shard holds the
 // pool's state.
 typedef struct cellist_shard {
-    CELLIST_UINT allocated;      // nodes handed out
-    CELLIST_UINT dropped_low;    // inserts that found no free node, 64 bits in two words
+    CELLIST_UINT allocated;    // nodes handed out
+    CELLIST_UINT dropped_low;  // inserts that found no free node, 64 bits in two words
     CELLIST_UINT dropped_high;
-    CELLIST_UINT rejected_low;   // inserts into cells outside the shape, 64 bits in two words
+    CELLIST_UINT rejected_low;  // inserts into cells outside the shape, 64 bits in two words
     CELLIST_UINT rejected_high;
-    CELLIST_UINT pool_full;      // behind the last shard: not 0 once every shard was seen full
+    CELLIST_UINT pool_full;  // behind the last shard: not 0 once every shard was seen full
     CELLIST_UINT padding[10];
 } cellist_shard;
 

@@ -30,8 +30,9 @@ std::string size_text(std::uint64_t bytes) {
 int devices(std::ostream& out) {
     const std::vector<DeviceInfo> infos = Device::all();
     if (infos.empty())
-        throw Error("no OpenCL device found: install a driver, or PoCL for the CPU "
-                    "(pocl-opencl-icd)");
+        throw Error(
+            "no OpenCL device found: install a driver, or PoCL for the CPU "
+            "(pocl-opencl-icd)");
 
     constexpr std::size_t columns = 9;
     using Row = std::array<std::string, columns>;

@@ -98,7 +98,7 @@ public:
     explicit Selftest(const Device& device) : device_(device) {
         std::mt19937 random(20100628);
         inserts_.resize(200'000);
-        for (cl_uint i = 0; SelftestInsert& insert : inserts_) {
+        for (cl_uint i = 0; SelftestInsert & insert : inserts_) {
             const bool hot = random() % 4 == 0;
             insert.x = hot ? 7 : static_cast<cl_int>(random() % (width + 2)) - 1;
             insert.y = hot ? 9 : static_cast<cl_int>(random() % (height + 2)) - 1;
@@ -108,8 +108,8 @@ public:
                 ++outside_;
                 continue;
             }
-            const auto cell = static_cast<std::uint64_t>(insert.y) * width +
-                              static_cast<std::uint64_t>(insert.x);
+            const auto cell =
+                static_cast<std::uint64_t>(insert.y) * width + static_cast<std::uint64_t>(insert.x);
             oracle_[cell].emplace_back(insert.record.key, insert.record.id);
         }
         for (auto& [cell, records] : oracle_) std::sort(records.begin(), records.end());
@@ -149,11 +149,13 @@ public:
         const std::vector<cl_uint> found = counts.download();
         for (const auto& [cell, all] : oracle_) {
             const std::vector<Record> expected(
-                all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(4, all.size())));
+                all.begin(),
+                all.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(4, all.size())));
             std::vector<Record> got;
             for (std::size_t i = 0; i < std::min(found[cell], cl_uint{4}); ++i)
                 got.emplace_back(records[cell * 4 + i].key, records[cell * 4 + i].id);
-            if (const std::string text = difference(cell, expected, got); !text.empty()) return text;
+            if (const std::string text = difference(cell, expected, got); !text.empty())
+                return text;
         }
         return {};
     }
@@ -163,19 +165,22 @@ public:
         Lists<SelftestRecord> small(device_, {width, height},
                                     {.overflow = Overflow::drop, .capacity_nodes = capacity});
         const BuildReport report = build(small);
-        return first_of({difference("stored", capacity, report.stored),
-                         difference("dropped", inserts_.size() - outside_ - capacity, report.dropped),
-                         lists_state(small)});
+        return first_of(
+            {difference("stored", capacity, report.stored),
+             difference("dropped", inserts_.size() - outside_ - capacity, report.dropped),
+             lists_state(small)});
     }
 
 private:
     Lists<SelftestRecord>& lists() {
-        if (!lists_) lists_.emplace(device_, Shape{width, height}, ListsOptions{.capacity_nodes = 1000});
+        if (!lists_)
+            lists_.emplace(device_, Shape{width, height}, ListsOptions{.capacity_nodes = 1000});
         return *lists_;
     }
 
     BuildReport build(Lists<SelftestRecord>& lists) {
-        if (!insert_) insert_.emplace(device_, source, "selftest_insert", lists, type<SelftestInsert>);
+        if (!insert_)
+            insert_.emplace(device_, source, "selftest_insert", lists, type<SelftestInsert>);
         const Buffer<SelftestInsert> inserts(device_, inserts_);
         return lists.build(*insert_, Range::padded(inserts_.size()), inserts,
                            static_cast<cl_uint>(inserts_.size()));
@@ -201,7 +206,8 @@ int selftest(const Device& device, std::ostream& out) {
         << device.info().driver << ")\n";
     Selftest test(device);
     const std::pair<const char*, std::function<std::string()>> checks[] = {
-        {"grows to the exact demand and counts every record", [&] { return test.grows_and_counts(); }},
+        {"grows to the exact demand and counts every record",
+         [&] { return test.grows_and_counts(); }},
         {"sorts every list, ties included", [&] { return test.sorts(); }},
         {"takes the 4 nearest of every list", [&] { return test.takes_the_nearest(); }},
         {"drops exactly what does not fit", [&] { return test.drops_exactly(); }},
@@ -218,7 +224,8 @@ int selftest(const Device& device, std::ostream& out) {
         if (!difference.empty()) out << "          " << difference << '\n';
         all_passed = all_passed && difference.empty();
     }
-    out << (all_passed ? "cellist works on this device\n" : "cellist does not work on this device\n");
+    out << (all_passed ? "cellist works on this device\n"
+                       : "cellist does not work on this device\n");
     return all_passed ? 0 : 1;
 }
 

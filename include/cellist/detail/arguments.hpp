@@ -35,8 +35,7 @@ public:
     };
 
     template <class T>
-        requires(std::is_arithmetic_v<T> || std::is_enum_v<T> ||
-                 requires { DeviceType<T>::size; })
+        requires(std::is_arithmetic_v<T> || std::is_enum_v<T> || requires { DeviceType<T>::size; })
     void add(const T& value) {
         static_assert(!std::is_same_v<T, bool>, "OpenCL C has no bool parameters: pass a cl_uint");
         append(Kind::value, &value, sizeof value);
@@ -57,9 +56,7 @@ public:
         const cl_sampler handle = sampler();
         append(Kind::sampler, &handle, sizeof handle);
     }
-    void add(const LocalMemory& local) {
-        arguments_.push_back({Kind::local, 0, local.size_bytes});
-    }
+    void add(const LocalMemory& local) { arguments_.push_back({Kind::local, 0, local.size_bytes}); }
     void append(Kind kind, const void* data, std::size_t size) {
         const std::size_t offset = bytes_.size();
         bytes_.resize(offset + size);

@@ -52,6 +52,7 @@ private:
     [[nodiscard]] std::uint64_t bytes_with(std::uint64_t capacity_nodes) const;
     [[nodiscard]] std::optional<std::string> refusal(std::uint64_t capacity_nodes) const;
     void allocate_pool(std::uint64_t capacity_nodes);
+    void empty_after_failure() noexcept;
     [[nodiscard]] Counters read_counters() const;
     Kernel& kernel(const std::string& name, std::string_view source,
                    const std::string& key = {}) const;
