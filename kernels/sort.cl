@@ -1,53 +1,82 @@
 // Sorts every list by cellist_sort_key(record), then by the members of the record in order, by
-// relinking its nodes. Any length; no memory beyond registers.
+// relinking its nodes. Any length; the records stay where they are.
 //
-// Bottom-up merge sort of a linked list: pending[i] is a sorted list of 2^i nodes or none, and taking
-// a node in works like adding one to a binary number, each carry merging two lists of equal size.
+// Lists of up to CELLIST_SORT_SHORT nodes: insertion sort of (key, node) pairs in private memory,
+// while walking the list; then one pass that writes the links. Longer lists: bottom-up merge sort of
+// the linked list itself. pending[i] is a sorted list of 2^i nodes or none, and taking a node in
+// works like adding one to a binary number, each carry merging two lists of equal size.
 //
 // One work-item a cell; the range is padded to whole work-groups. The host defines
 // cellist_sort_key(CELLIST_RECORD), which maps the key to an unsigned integer of the same order.
 #include <cellist/lists.clh>
 
-static inline int cellist_sort_before(CELLIST_LISTS(CELLIST_RECORD, lists), uint a, uint b) {
-    const ulong x = cellist_sort_key(cellist_get(lists, a));
-    const ulong y = cellist_sort_key(cellist_get(lists, b));
+// Longest list that is sorted in private memory.
+#ifndef CELLIST_SORT_SHORT
+#define CELLIST_SORT_SHORT 32
+#endif
+
+// Whether node a, with key x, comes before node b, with key y.
+static inline int cellist_sort_before(CELLIST_LISTS(CELLIST_RECORD, lists), uint a, ulong x, uint b,
+                                      ulong y) {
     if (x != y) return x < y;
     return cellist_record_before(cellist_get(lists, a), cellist_get(lists, b), 0);
+}
+
+// Sorts the list of a cell if it is short; returns 0 and changes nothing if it is not.
+static inline int cellist_sort_short(CELLIST_LISTS(CELLIST_RECORD, lists), uint cell) {
+    ulong keys[CELLIST_SORT_SHORT];
+    uint nodes[CELLIST_SORT_SHORT];
+    uint length = 0;
+    cellist_for_each(lists, cell, node) {
+        if (length == CELLIST_SORT_SHORT) return 0;
+        const ulong key = cellist_sort_key(cellist_get(lists, node));
+        uint at = length++;
+        for (; at > 0; --at) {
+            if (!cellist_sort_before(CELLIST_PASS(lists), node, key, nodes[at - 1], keys[at - 1]))
+                break;
+            keys[at] = keys[at - 1];
+            nodes[at] = nodes[at - 1];
+        }
+        keys[at] = key;
+        nodes[at] = node;
+    }
+    if (length < 2) return 1;
+    lists_heads[cell] = nodes[0];
+    for (uint i = 1; i < length; ++i) lists_nodes[nodes[i - 1]].next = nodes[i];
+    lists_nodes[nodes[length - 1]].next = CELLIST_NONE;
+    return 1;
 }
 
 static inline uint cellist_sort_merge(CELLIST_LISTS(CELLIST_RECORD, lists), uint a, uint b) {
     uint first = CELLIST_NONE;
     uint last = CELLIST_NONE;
+    ulong x = cellist_sort_key(cellist_get(lists, a));
+    ulong y = cellist_sort_key(cellist_get(lists, b));
     for (uint step = 0; step < lists_view.capacity_nodes; ++step) {
-        if (a == CELLIST_NONE || b == CELLIST_NONE) break;
-        uint least = a;
-        if (cellist_sort_before(CELLIST_PASS(lists), b, a)) {
-            least = b;
-            b = lists_nodes[b].next;
-        } else {
-            a = lists_nodes[a].next;
-        }
+        const int b_first = cellist_sort_before(CELLIST_PASS(lists), b, y, a, x);
+        const uint least = b_first ? b : a;
         if (last == CELLIST_NONE)
             first = least;
         else
             lists_nodes[last].next = least;
         last = least;
+
+        const uint next = lists_nodes[least].next;
+        if (next == CELLIST_NONE) break;
+        if (b_first)
+            b = next, y = cellist_sort_key(cellist_get(lists, b));
+        else
+            a = next, x = cellist_sort_key(cellist_get(lists, a));
     }
-    const uint rest = a == CELLIST_NONE ? b : a;
-    if (last == CELLIST_NONE) return rest;
-    lists_nodes[last].next = rest;
+    // One list has ended with `last`; the rest of the other follows.
+    lists_nodes[last].next = last == b ? a : b;
     return first;
 }
 
-kernel void cellist_sort(CELLIST_LISTS(CELLIST_RECORD, lists)) {
-    const uint cell = get_global_id(0);
-    if (cell >= cellist_cells(lists)) return;
-    const uint head = lists_heads[cell];
-    if (head == CELLIST_NONE || lists_nodes[head].next == CELLIST_NONE) return;
-
+static inline void cellist_sort_long(CELLIST_LISTS(CELLIST_RECORD, lists), uint cell) {
     uint pending[32];
     uint used = 0;
-    uint node = head;
+    uint node = lists_heads[cell];
     for (uint taken = 0; node != CELLIST_NONE && taken < lists_view.capacity_nodes; ++taken) {
         const uint next = lists_nodes[node].next;
         lists_nodes[node].next = CELLIST_NONE;
@@ -62,10 +91,18 @@ kernel void cellist_sort(CELLIST_LISTS(CELLIST_RECORD, lists)) {
     }
 
     uint sorted = CELLIST_NONE;
-    for (uint level = 0; level < used; ++level)
-        if (pending[level] != CELLIST_NONE)
-            sorted = sorted == CELLIST_NONE
-                         ? pending[level]
-                         : cellist_sort_merge(CELLIST_PASS(lists), pending[level], sorted);
+    for (uint level = 0; level < used; ++level) {
+        if (pending[level] == CELLIST_NONE) continue;
+        sorted = sorted == CELLIST_NONE
+                     ? pending[level]
+                     : cellist_sort_merge(CELLIST_PASS(lists), pending[level], sorted);
+    }
     lists_heads[cell] = sorted;
+}
+
+kernel void cellist_sort(CELLIST_LISTS(CELLIST_RECORD, lists)) {
+    const uint cell = get_global_id(0);
+    if (cell >= cellist_cells(lists)) return;
+    if (!cellist_sort_short(CELLIST_PASS(lists), cell))
+        cellist_sort_long(CELLIST_PASS(lists), cell);
 }

@@ -242,8 +242,8 @@ std::vector<std::uint64_t> ListsCore::download(
     const std::function<void*(std::uint64_t)>& allocate) const {
     const std::vector<cl_uint> lengths = cell_lengths();
     std::vector<std::uint64_t> offsets(lengths.size() + 1, 0);
-    std::partial_sum(lengths.begin(), lengths.end(), offsets.begin() + 1,
-                     std::plus<std::uint64_t>());
+    std::inclusive_scan(lengths.begin(), lengths.end(), offsets.begin() + 1, std::plus<>(),
+                        std::uint64_t{0});
 
     const std::size_t record_bytes = definitions_.records.back().size;
     auto* target = static_cast<std::byte*>(allocate(offsets.back()));

@@ -17,7 +17,9 @@ struct Range {
     std::array<std::size_t, 3> local{0, 0, 0};
     std::size_t dimensions = 1;
 
-    Range(std::integral auto x) : global{static_cast<std::size_t>(x), 1, 1} {}
+    // An integer is a range: run(1000, ...) reads as it should.
+    Range(std::integral auto x)  // NOLINT(google-explicit-constructor)
+        : global{static_cast<std::size_t>(x), 1, 1} {}
     Range(std::integral auto x, std::integral auto y)
         : global{static_cast<std::size_t>(x), static_cast<std::size_t>(y), 1}, dimensions(2) {}
     Range(std::integral auto x, std::integral auto y, std::integral auto z)
