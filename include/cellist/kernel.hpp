@@ -26,17 +26,17 @@ struct Source {
 /// copyable.
 class Kernel {
 public:
-    /// Builds `source` and takes the kernel called `name` from it. `uses` names the types that the
+    /// Builds `code` and takes the kernel called `name` from it. `uses` names the types that the
     /// source may use: containers, and cellist::type<T> for other adapted structs. Throws OpenClError
     /// with the compiler's log where the source does not build, Error where a struct's layout on the
     /// device differs. Blocks while it compiles.
     template <class... Uses>
-    Kernel(const Device& device, const Source& source, const std::string& name, const Uses&... uses)
-        : Kernel(device.state(), source, name, definitions_of(uses...)) {}
+    Kernel(const Device& device, const Source& code, const std::string& name, const Uses&... uses)
+        : Kernel(device.state(), code, name, definitions_of(uses...)) {}
     template <class... Uses>
-    Kernel(const Device& device, std::string_view source, const std::string& name,
+    Kernel(const Device& device, std::string_view code, const std::string& name,
            const Uses&... uses)
-        : Kernel(device, Source{.text = std::string(source)}, name, uses...) {}
+        : Kernel(device, Source{.text = std::string(code)}, name, uses...) {}
 
     Kernel(Kernel&&) noexcept;
     Kernel& operator=(Kernel&&) noexcept;
@@ -57,8 +57,8 @@ public:
     [[nodiscard]] const std::string& name() const;
 
     /// @private
-    Kernel(std::shared_ptr<detail::DeviceState> device, const Source& source,
-           const std::string& name, const detail::Definitions& definitions);
+    Kernel(std::shared_ptr<detail::DeviceState> device, const Source& code, const std::string& name,
+           const detail::Definitions& definitions);
     /// @private
     cl::Event enqueue(const Range& range, const detail::Arguments& arguments);
 
