@@ -1,0 +1,140 @@
+#include "report.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <iomanip>
+#include <ostream>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "input_error.hpp"
+
+namespace oit {
+namespace {
+
+std::string grouped(std::uint64_t value) {
+    std::string digits = std::to_string(value);
+    for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, ",");
+    return digits;
+}
+
+std::string fixed(double value, int decimals) {
+    std::ostringstream out;
+    out << std::fixed << std::setprecision(decimals) << value;
+    return out.str();
+}
+
+std::string megabytes(std::uint64_t bytes) { return fixed(static_cast<double>(bytes) / 1e6, 1); }
+
+std::string dropped_text(const support::MeshDrops& drops) {
+    std::string text;
+    const auto add = [&](std::uint64_t count, const std::string& what) {
+        if (count > 0) text += (text.empty() ? "" : ", ") + grouped(count) + " " + what;
+    };
+    add(drops.nonfinite_triangles, "with NaN or infinite vertices");
+    add(drops.out_of_range_triangles, "with indices out of range");
+    add(drops.degenerate_triangles, "degenerate");
+    add(drops.points_and_lines, "points or lines");
+    return text.empty() ? "" : " (dropped: " + text + ")";
+}
+
+void print_comparison(const Comparison& c, std::ostream& out) {
+    const auto line = [&out](const std::string& name) -> std::ostream& {
+        return out << "  " << std::left << std::setw(18) << name << std::right;
+    };
+    line("PSNR") << fixed(c.psnr_db, 1) << " dB against double precision\n";
+    line("largest error") << fixed(255 * c.max_abs_error, 4) << " / 255\n";
+    line("over 1/255") << grouped(c.pixels_over) << " of " << grouped(c.pixels) << " pixels, "
+                       << grouped(c.pixels_explained)
+                       << " explained by depths closer than 2^-20 of each other\n";
+    line("fragment counts") << (c.pixels_with_other_count == 0
+                                    ? std::string("equal in every pixel")
+                                    : "differ in " + grouped(c.pixels_with_other_count) +
+                                          " pixels, reference has " + grouped(c.fragments) +
+                                          " in all")
+                            << '\n';
+    line("depth error") << fixed(c.max_depth_error * (1 << 24), 2)
+                        << " * 2^-24 at most (bound: 8)\n";
+}
+
+}  // namespace
+
+void print(const Report& report, std::ostream& out) {
+    const auto line = [&out](const std::string& name) -> std::ostream& {
+        return out << "  " << std::left << std::setw(18) << name << std::right;
+    };
+    const Options& options = report.options;
+    out << "cellist-oit " << options.mesh.filename().string() << ", " << options.width << 'x'
+        << options.height << ", alpha " << options.alpha << ", "
+        << (options.layers ? std::to_string(*options.layers) + " nearest layers" : "all layers")
+        << (options.opaque_floor ? ", opaque floor" : "") << '\n';
+    line("device") << report.device << " (driver " << report.driver << ")\n";
+    line("triangles") << grouped(report.triangles) << dropped_text(report.drops) << '\n';
+    line("fragments") << grouped(report.fragments) << '\n';
+    line("non-empty pixels") << grouped(report.cells_nonempty) << '\n';
+    line("longest list") << grouped(report.longest_list) << '\n';
+    line("memory") << megabytes(report.pool_bytes) << " MB of lists, "
+                   << megabytes(report.device_bytes) << " MB in all\n";
+    line("transform") << fixed(report.times.transform_ms, 2) << " ms\n";
+    line("raster + insert") << fixed(report.times.raster_insert_ms, 2) << " ms\n";
+    line("sort + blend") << fixed(report.times.sort_blend_ms, 2) << " ms\n";
+    line("frame") << fixed(report.times.frame_ms, 2) << " ms (median of " << options.frames
+                  << ")\n";
+    if (report.comparison) print_comparison(*report.comparison, out);
+    if (report.mesh_ends_within_line)
+        line("note") << "the mesh file ends within a line: it may have been cut off\n";
+    line("picture") << std::filesystem::absolute(options.out).lexically_normal().string() << '\n';
+}
+
+void write_json(const Report& report, const std::filesystem::path& path) {
+    const Options& options = report.options;
+    nlohmann::ordered_json json;
+    json["device"] = report.device;
+    json["driver"] = report.driver;
+    json["mesh"] = options.mesh.filename().string();
+    json["width"] = options.width;
+    json["height"] = options.height;
+    json["alpha"] = options.alpha;
+    if (options.layers)
+        json["layers"] = *options.layers;
+    else
+        json["layers"] = "all";
+    json["view"] = {options.orbit.azimuth_degrees, options.orbit.elevation_degrees};
+    json["opaque_floor"] = options.opaque_floor;
+    json["triangles"] = report.triangles;
+    json["dropped"] = {{"nonfinite_vertices", report.drops.nonfinite_vertices},
+                       {"nonfinite_triangles", report.drops.nonfinite_triangles},
+                       {"out_of_range_triangles", report.drops.out_of_range_triangles},
+                       {"degenerate_triangles", report.drops.degenerate_triangles},
+                       {"points_and_lines", report.drops.points_and_lines}};
+    json["fragments"] = report.fragments;
+    json["cells_nonempty"] = report.cells_nonempty;
+    json["longest_list"] = report.longest_list;
+    json["pool_bytes"] = report.pool_bytes;
+    json["device_bytes"] = report.device_bytes;
+    json["frames"] = options.frames;
+    json["time_ms"] = {{"transform", report.times.transform_ms},
+                       {"raster_insert", report.times.raster_insert_ms},
+                       {"sort_blend", report.times.sort_blend_ms},
+                       {"frame", report.times.frame_ms}};
+    json["psnr_db"] = nullptr;
+    json["max_abs_error"] = nullptr;
+    if (report.comparison) {
+        const Comparison& c = *report.comparison;
+        if (std::isfinite(c.psnr_db)) json["psnr_db"] = c.psnr_db;
+        json["max_abs_error"] = c.max_abs_error;
+        json["reference"] = {{"pixels_over_1_255", c.pixels_over},
+                             {"pixels_explained", c.pixels_explained},
+                             {"pixels_ambiguous", c.pixels_ambiguous},
+                             {"pixels_with_other_count", c.pixels_with_other_count},
+                             {"fragments", c.fragments},
+                             {"max_depth_error", c.max_depth_error}};
+    }
+    std::ofstream file(path);
+    file << json.dump(2) << '\n';
+    file.close();
+    if (!file) throw support::InputError("cannot write '" + path.string() + "'");
+}
+
+}  // namespace oit

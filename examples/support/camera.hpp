@@ -1,0 +1,17 @@
+#pragma once
+
+#include "raster/view.hpp"
+
+namespace support {
+
+/// A camera that looks at the origin from an orbit around it, with y up.
+struct Orbit {
+    double azimuth_degrees = 0;    ///< 0 looks from +z, 90 from +x
+    double elevation_degrees = 0;  ///< -90 to 90; positive looks down
+};
+
+/// The perspective view of an orbit camera that frames a sphere of radius 1 in an image of
+/// width x height pixels. The field of view is 30 degrees along the shorter side.
+[[nodiscard]] raster::View frame_unit_sphere(const Orbit& orbit, int width, int height);
+
+}  // namespace support

@@ -1,0 +1,46 @@
+#include "image.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <stb_image_write.h>
+
+#include "input_error.hpp"
+
+namespace support {
+
+double srgb_from_linear(double linear) {
+    if (!(linear > 0)) return 0;
+    if (linear >= 1) return 1;
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+void check_image_path(const std::filesystem::path& path) {
+    const std::filesystem::path folder =
+        path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+    std::error_code error;
+    if (path.empty()) throw InputError("the output path is empty");
+    if (!std::filesystem::is_directory(folder, error))
+        throw InputError("cannot write '" + path.string() + "': the folder '" + folder.string() +
+                         "' does not exist");
+    if (std::filesystem::is_directory(path, error))
+        throw InputError("cannot write '" + path.string() + "': it is a folder");
+}
+
+void write_png(const std::filesystem::path& path, std::span<const cl_float4> pixels, int width,
+               int height) {
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(pixels.size() * 3);
+    for (const cl_float4& pixel : pixels)
+        for (int channel = 0; channel < 3; ++channel) {
+            const double encoded = srgb_from_linear(static_cast<double>(pixel.s[channel]));
+            bytes.push_back(static_cast<std::uint8_t>(std::lround(255 * encoded)));
+        }
+    if (stbi_write_png(path.string().c_str(), width, height, 3, bytes.data(), 3 * width) == 0)
+        throw InputError("cannot write '" + path.string() + "'");
+}
+
+}  // namespace support

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+
+#include <cellist/opencl.hpp>
+
+namespace support {
+
+/// The sRGB encoding of a linear value, both clamped to 0 ... 1. NaN becomes 0.
+[[nodiscard]] double srgb_from_linear(double linear);
+
+/// Throws InputError unless an image can be written there: the folder exists and the path is not a
+/// folder itself.
+void check_image_path(const std::filesystem::path& path);
+
+/// Writes linear RGB pixels (the fourth component is not used), row by row from the top, as an
+/// 8-bit sRGB PNG. Throws InputError where the file cannot be written.
+void write_png(const std::filesystem::path& path, std::span<const cl_float4> pixels, int width,
+               int height);
+
+}  // namespace support

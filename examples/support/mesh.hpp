@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+namespace support {
+
+/// What loading a mesh left out.
+struct MeshDrops {
+    std::uint64_t nonfinite_vertices = 0;      ///< vertices with a NaN or infinite coordinate
+    std::uint64_t nonfinite_triangles = 0;     ///< faces that used one
+    std::uint64_t out_of_range_triangles = 0;  ///< faces with an index beyond the vertices
+    std::uint64_t degenerate_triangles = 0;    ///< triangles with two equal corners
+    std::uint64_t points_and_lines = 0;        ///< faces with less than three corners
+
+    [[nodiscard]] std::uint64_t triangles() const {
+        return nonfinite_triangles + out_of_range_triangles + degenerate_triangles;
+    }
+};
+
+/// Indexed triangles with a normal at each vertex. Normals have length 1 and lie on the side from
+/// which a triangle's corners run counter-clockwise.
+struct Mesh {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec3> normals;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    MeshDrops drops;
+    /// The file ends within a line, so that it may have been cut off.
+    bool ends_within_line = false;
+};
+
+/// Loads every mesh of a file that Assimp reads, placed by its node's transform. Polygons are
+/// triangulated. Vertices with equal position and normal are merged; smooth normals are made where
+/// the file has none. Triangles that disagree with their normals are turned round. Throws
+/// InputError where the file is missing, unreadable, empty or truncated, or has no triangle that
+/// can be drawn.
+[[nodiscard]] Mesh load_mesh(const std::filesystem::path& path);
+
+/// Merges equal vertices, drops what cannot be drawn, and makes the normals that are missing (of
+/// length 0). Each triangle starts at its vertex with the lowest index. What load_mesh does after
+/// reading; for meshes from elsewhere.
+[[nodiscard]] Mesh clean_mesh(const Mesh& mesh);
+
+/// Throws InputError where a PLY file ends before all elements that its header declares. Other
+/// files pass.
+void check_ply_is_complete(const std::filesystem::path& path);
+
+/// Moves the mesh to the origin and scales it so that its smallest enclosing sphere (to within a
+/// few percent) has radius 1. Coordinates up to the largest float are safe.
+void fit_to_unit_sphere(Mesh& mesh);
+
+}  // namespace support

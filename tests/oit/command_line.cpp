@@ -1,0 +1,149 @@
+// The program refuses what it cannot do, in one line that names the value.
+#include <cstdio>
+#include <cstdlib>
+#include <tuple>
+
+#include <sys/wait.h>
+
+#include "oit/support/files.hpp"
+#include "oit/support/procedural.hpp"
+#include "support/catch.hpp"
+#include "support/errors.hpp"
+
+namespace cellist::test {
+namespace {
+
+struct Outcome {
+    int exit_code;
+    std::string out;
+    std::string error;
+};
+
+class Program {
+public:
+    Program() : mesh_(folder_.write("knot.obj", obj_text(torus_knot(2, 3, 80, 8)))) {}
+
+    /// `environment` stands before the program, `arguments` after it.
+    Outcome run(const std::string& arguments, const std::string& environment = {}) const {
+        const std::string out = (folder_ / "stdout").string(),
+                          error = (folder_ / "stderr").string();
+        const std::string command = "cd '" + (folder_ / ".").string() + "' && " + environment +
+                                    " '" CELLIST_OIT_PROGRAM "' " + arguments + " >'" + out +
+                                    "' 2>'" + error + "'";
+        const int status = std::system(command.c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(error)};
+    }
+
+    [[nodiscard]] const Folder& folder() const { return folder_; }
+
+private:
+    Folder folder_;
+    std::filesystem::path mesh_;
+};
+
+void require_refused(const Outcome& outcome, const std::string& named) {
+    INFO(outcome.error);
+    CHECK(outcome.exit_code == 1);
+    CHECK(outcome.error.starts_with("cellist-oit: "));
+    CHECK(count_of(outcome.error, "\n") == 1);
+    CHECK(contains(outcome.error, named));
+    CHECK(outcome.out.empty());
+}
+
+TEST_CASE("bad arguments are refused") {
+    const Program program;
+    for (const auto& [arguments, named] : {
+             std::pair<std::string, std::string>{"--size 0x0", "0x0"},
+             {"--size 100000x100000", "100000x100000"},
+             {"--size 20000x10", "16384"},
+             {"--size 12x", "12x"},
+             {"--size 1280x720x3", "1280x720x3"},
+             {"--size -5x7", "-5x7"},
+             {"--size big", "big"},
+             {"--size 99999999999999999999x1", "99999999999999999999x1"},
+             {"--alpha nan", "nan"},
+             {"--alpha -0.1", "-0.1"},
+             {"--alpha 1.01", "1.01"},
+             {"--alpha half", "half"},
+             {"--layers 0", "1 to"},
+             {"--layers -3", "-3"},
+             {"--layers some", "some"},
+             {"--view 1", "1"},
+             {"--view 1,2,3", "1,2,3"},
+             {"--view 0,91", "90"},
+             {"--view nan,0", "nan,0"},
+             {"--frames 0", "0"},
+             {"--device nosuchdevice", "nosuchdevice"},
+             {"--out missing/folder/a.png", "missing/folder"},
+             {"--out .", "folder"},
+             {"--json missing/folder/a.json", "missing/folder"},
+             {"--bogus", "--bogus"},
+             {"another.obj", "another.obj"},
+         }) {
+        INFO(arguments);
+        require_refused(program.run("knot.obj " + arguments), named);
+    }
+    require_refused(program.run(""), "mesh");
+    require_refused(program.run("nosuch.obj"), "nosuch.obj");
+    require_refused(program.run(".", ""), "folder");
+}
+
+TEST_CASE("a machine without OpenCL is told so") {
+    const Program program;
+    require_refused(program.run("knot.obj", "OCL_ICD_VENDORS=/nonexistent"), "no OpenCL device");
+    require_refused(program.run("knot.obj", "CELLIST_DEVICE=nosuchdevice"), "nosuchdevice");
+}
+
+TEST_CASE("arguments that start with a minus and extreme ones are accepted") {
+    const Program program;
+    for (const std::string arguments :
+         {"--view -30,-10", "--size 1x1", "--size 3x200", "--alpha 0", "--alpha 1",
+          "--layers 4294967295", "--view 0,90 --opaque-floor", "--view 0,-90 --opaque-floor"}) {
+        INFO(arguments);
+        const Outcome outcome =
+            program.run("knot.obj --frames 1 --out a.png --size 40x30 " + arguments);
+        // An option that is given twice is refused by the parser, so sizes replace the default.
+        const Outcome again = contains(arguments, "--size")
+                                  ? program.run("knot.obj --frames 1 --out a.png " + arguments)
+                                  : outcome;
+        INFO(again.error);
+        CHECK(again.exit_code == 0);
+    }
+}
+
+TEST_CASE("the picture, the screen and the JSON agree, and pictures are equal in every run") {
+    const Program program;
+    const std::string arguments =
+        "knot.obj --size 160x90 --opaque-floor --reference --frames 1 --json a.json --out ";
+    const Outcome outcome = program.run(arguments + "a.png");
+    INFO(outcome.error);
+    REQUIRE(outcome.exit_code == 0);
+    CHECK(outcome.error.empty());
+    const std::string json = read_file(program.folder() / "a.json");
+    for (const std::string key :
+         {"device", "driver", "width", "height", "triangles", "fragments", "cells_nonempty",
+          "longest_list", "pool_bytes", "time_ms", "transform", "raster_insert", "sort_blend",
+          "frame", "psnr_db", "max_abs_error"}) {
+        INFO(key);
+        CHECK(contains(json, "\"" + key + "\""));
+    }
+    CHECK(contains(outcome.out, "1,280"));
+    CHECK(contains(json, "\"triangles\": 1280"));
+    CHECK(contains(outcome.out, "a.png"));
+    REQUIRE(program.run(arguments + "b.png").exit_code == 0);
+    const std::string first = read_file(program.folder() / "a.png");
+    CHECK(first.starts_with("\x89PNG"));
+    CHECK(first == read_file(program.folder() / "b.png"));
+}
+
+TEST_CASE("without a reference, its figures are null") {
+    const Program program;
+    REQUIRE(program.run("knot.obj --size 32x32 --frames 1 --json a.json --out a.png").exit_code ==
+            0);
+    const std::string json = read_file(program.folder() / "a.json");
+    CHECK(contains(json, "\"psnr_db\": null"));
+    CHECK(contains(json, "\"max_abs_error\": null"));
+}
+
+}  // namespace
+}  // namespace cellist::test

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <cellist/cellist.hpp>
+
+#include "mesh.hpp"
+#include "raster/rasteriser.hpp"
+#include "support/device.hpp"
+
+namespace cellist::test {
+
+/// What the rasteriser made of a mesh: for each pixel how often it was covered, and the depth of
+/// one of the samples.
+struct Coverage {
+    std::vector<cl_uint> counts;
+    std::vector<cl_float> depths;
+};
+
+/// A view in which the position (x, y, 1) is the point x, y of the image, in pixels from its
+/// centre, y down. Positions that are multiples of 1/256 are snapped to themselves.
+inline raster::View pixel_view(int width, int height) {
+    raster::View view{};
+    view.row_x[0] = RASTER_SUBPIXELS;
+    view.row_y[1] = RASTER_SUBPIXELS;
+    view.row_w[2] = 1;
+    view.near_depth = 0.5F;
+    view.width = width;
+    view.height = height;
+    return view;
+}
+
+/// Draws a mesh through the rasteriser, with a pass that counts.
+inline Coverage coverage_of(const support::Mesh& mesh, const raster::View& view) {
+    constexpr auto source = R"(
+#define RASTER_TARGET volatile global uint* counts, global float* depths
+#define RASTER_TARGET_PASS counts, depths
+static inline void raster_emit(RASTER_TARGET, const View* view, const RasterSample* sample) {
+    const uint pixel = sample->y * view->width + sample->x;
+    atomic_inc(&counts[pixel]);
+    depths[pixel] = sample->depth;
+}
+)";
+    raster::SetupKernels setup(device());
+    raster::Pass pass(device(), source, "count.cl");
+    const raster::DeviceMesh on_device(device(), mesh);
+    raster::Drawing drawing(device(), setup, on_device, view);
+    const auto pixels =
+        static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
+    Buffer<cl_uint> counts(device(), pixels);
+    Buffer<cl_float> depths(device(), pixels);
+    counts.fill(0);
+    depths.fill(0);
+    drawing.transform();
+    drawing.bin();
+    drawing.draw(pass, counts, depths);
+    return {counts.download(), depths.download()};
+}
+
+/// A point in 1/256 pixel from the centre of the image.
+struct Point {
+    int x, y;
+};
+
+/// Adds the triangle a, b, c to a mesh for pixel_view.
+inline void add_triangle(support::Mesh& mesh, Point a, Point b, Point c) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const Point& p : {a, b, c}) {
+        mesh.positions.emplace_back(static_cast<float>(p.x) / RASTER_SUBPIXELS,
+                                    static_cast<float>(p.y) / RASTER_SUBPIXELS, 1.0F);
+        mesh.normals.emplace_back(0.0F, 0.0F, 1.0F);
+    }
+    mesh.triangles.push_back({first, first + 1, first + 2});
+}
+
+}  // namespace cellist::test
