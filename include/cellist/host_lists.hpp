@@ -3,13 +3,17 @@
 #include <cstdint>
 #include <initializer_list>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include <cellist/error.hpp>
 #include <cellist/shape.hpp>
 
 namespace cellist {
 
-/// The lists of all cells in host memory, one behind the other.
+/// The lists of all cells in host memory, one behind the other. What is taken from a temporary is a
+/// copy, so `for (const Hit& hit : hits.download()[{640, 360}])` is sound.
 template <class T>
 class HostLists {
 public:
@@ -18,20 +22,33 @@ public:
 
     /// The records of the cell at a position. Throws Error if it is outside of the shape.
     [[nodiscard]] std::span<const T> operator[](
-        std::initializer_list<std::uint64_t> position) const {
+        std::initializer_list<std::uint64_t> position) const& {
         return cell(shape_.cell(position));
     }
-    /// The records of the cell with an index in 0 ... cells() - 1.
-    [[nodiscard]] std::span<const T> cell(std::uint64_t index) const {
-        const std::uint64_t begin = offsets_.at(index);
-        return std::span<const T>(records_).subspan(begin, offsets_.at(index + 1) - begin);
+    [[nodiscard]] std::vector<T> operator[](std::initializer_list<std::uint64_t> position) && {
+        return std::move(*this).cell(shape_.cell(position));
+    }
+
+    /// The records of the cell with an index in 0 ... cells() - 1. Throws Error if there is none.
+    [[nodiscard]] std::span<const T> cell(std::uint64_t index) const& {
+        if (index >= cells())
+            throw Error("cell " + std::to_string(index) + " is outside of the shape " +
+                        shape_.to_string());
+        return std::span<const T>(records_).subspan(offsets_[index],
+                                                    offsets_[index + 1] - offsets_[index]);
+    }
+    [[nodiscard]] std::vector<T> cell(std::uint64_t index) && {
+        const std::span<const T> records = std::as_const(*this).cell(index);
+        return {records.begin(), records.end()};
     }
 
     [[nodiscard]] const Shape& shape() const { return shape_; }
     [[nodiscard]] std::uint64_t cells() const { return shape_.cells(); }
     /// cells() + 1 offsets into records(): the lists in compressed-row form.
-    [[nodiscard]] const std::vector<std::uint64_t>& offsets() const { return offsets_; }
-    [[nodiscard]] const std::vector<T>& records() const { return records_; }
+    [[nodiscard]] const std::vector<std::uint64_t>& offsets() const& { return offsets_; }
+    [[nodiscard]] std::vector<std::uint64_t> offsets() && { return std::move(offsets_); }
+    [[nodiscard]] const std::vector<T>& records() const& { return records_; }
+    [[nodiscard]] std::vector<T> records() && { return std::move(records_); }
 
 private:
     Shape shape_;
