@@ -1,0 +1,65 @@
+// Buffers hold, fill and return elements of any size.
+#include "support/errors.hpp"
+#include "support/inserts.hpp"
+
+namespace cellist::test {
+namespace {
+
+template <class T>
+void fill(const T& value) {
+    INFO(sizeof(T) << " bytes");
+    for (const std::size_t size : {0u, 1u, 7u, 1000u}) {
+        Buffer<T> buffer(device(), size);
+        buffer.fill(value);
+        const std::vector<T> found = buffer.download();
+        REQUIRE(found.size() == size);
+        REQUIRE(std::count(found.begin(), found.end(), value) == static_cast<std::ptrdiff_t>(size));
+    }
+}
+
+TEST_CASE("a buffer returns what was copied into it") {
+    for (const std::size_t size : {0u, 1u, 7u, 93u, 144u, 4096u, 1'000'000u}) {
+        std::vector<cl_uint> elements(size);
+        for (std::size_t i = 0; i < size; ++i) elements[i] = static_cast<cl_uint>(i * 2654435761u);
+        const Buffer<cl_uint> from_vector(device(), elements);
+        REQUIRE(from_vector.size() == size);
+        REQUIRE(from_vector.download() == elements);
+        const Buffer<cl_uint> from_span(device(), std::span<const cl_uint>(elements));
+        REQUIRE(from_span.download() == elements);
+    }
+}
+
+TEST_CASE("buffers are filled with values of any size") {
+    fill<cl_uchar>(200);
+    fill<cl_uint>(0x12345678u);
+    fill<cl_ulong>(0x123456789ABCDEF0u);
+    fill<std::array<cl_uchar, 3>>({1, 2, 3});
+    fill<std::array<cl_float, 3>>({1.0f, 2.0f, 3.0f});
+    fill<std::array<cl_ulong, 3>>({1, 2, ~cl_ulong{0}});
+    fill<std::array<cl_ulong, 16>>({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16});
+    fill<std::array<cl_ulong, 32>>({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16});
+}
+
+TEST_CASE("an empty buffer is a kernel argument") {
+    Kernel kernel(device(),
+                  "kernel void count(global const uint* in, uint size, global uint* out) "
+                  "{ *out = size; for (uint i = 0; i < size; ++i) *out += in[i]; }",
+                  "count");
+    const Buffer<cl_uint> empty(device(), 0);
+    const Buffer<cl_uint> out(device(), 1);
+    kernel.run(1, empty, cl_uint{0}, out);
+    REQUIRE(out.download()[0] == 0);
+}
+
+TEST_CASE("a buffer over the device's limit is refused, naming the size and the limit") {
+    const std::uint64_t limit = device().info().max_allocation_bytes;
+    for (const std::uint64_t size : {limit / 4 + 1, ~std::uint64_t{0} / 4, ~std::uint64_t{0}}) {
+        const auto error = error_of([&] { Buffer<cl_uint>(device(), size); });
+        INFO(error.what());
+        REQUIRE(contains(error.what(), std::to_string(size)));
+        REQUIRE(contains(error.what(), std::to_string(limit)));
+    }
+}
+
+}  // namespace
+}  // namespace cellist::test

@@ -1,0 +1,8 @@
+// error: DeviceType<bool>
+#include <cellist/cellist.hpp>
+
+struct Hit {
+    cl_float depth;
+    bool opaque;
+};
+CELLIST_STRUCT(Hit, depth, opaque);

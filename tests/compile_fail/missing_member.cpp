@@ -1,0 +1,8 @@
+// error: CELLIST_STRUCT: the layout of Hit differs from OpenCL C's
+#include <cellist/cellist.hpp>
+
+struct Hit {
+    cl_float depth;
+    cl_uint id;
+};
+CELLIST_STRUCT(Hit, depth);

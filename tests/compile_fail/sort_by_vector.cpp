@@ -1,0 +1,9 @@
+// error: records are ordered by a scalar member, or by an expression
+#include <cellist/cellist.hpp>
+
+struct Hit {
+    cl_float4 position;
+};
+CELLIST_STRUCT(Hit, position);
+
+void use(cellist::Lists<Hit>& hits) { hits.sort(&Hit::position); }

@@ -1,0 +1,11 @@
+// error: DeviceType<Point>
+#include <cellist/cellist.hpp>
+
+struct Point {
+    cl_float x, y;
+};
+struct Hit {
+    Point point;
+    cl_uint id;
+};
+CELLIST_STRUCT(Hit, point, id);

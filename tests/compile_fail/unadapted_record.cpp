@@ -1,0 +1,9 @@
+// error: adapt the record with CELLIST_STRUCT first
+#include <cellist/cellist.hpp>
+
+struct Hit {
+    cl_float depth;
+    cl_uint id;
+};
+
+void use(cellist::Lists<Hit>& hits) { hits.clear(); }

@@ -1,0 +1,209 @@
+// Inserts from kernels of any form: loops, divergent branches, ranges of 2 and 3 dimensions, several
+// containers.
+#include "support/errors.hpp"
+#include "support/inserts.hpp"
+
+namespace cellist::test {
+namespace {
+
+struct Spark {
+    cl_uint id;
+    cl_ushort heat;
+    cl_uchar rgb[3];
+};
+CELLIST_STRUCT(Spark, id, heat, rgb);
+
+constexpr auto source = R"(
+#include <cellist/lists.clh>
+
+kernel void loops(CELLIST_LISTS(Item, lists), uint count)
+{
+    const uint i = get_global_id(0);
+    if (i >= count) return;
+    for (uint k = 0; k < i % 13; ++k) {
+        if ((i + k) % 3 == 0) continue;
+        Item item = { (float)k, i };
+        if (k % 2) cellist_insert(lists, (i * 7 + k) % 101, item);
+        else cellist_insert(lists, i % 101, item);
+        if (k > 9) break;
+    }
+}
+
+static void put(CELLIST_LISTS(Item, lists), uint cell, float key)
+{
+    Item item = { key, cell };
+    cellist_insert(lists, cell, item);
+}
+
+kernel void plane(CELLIST_LISTS(Item, lists))
+{
+    const int x = get_global_id(0), y = get_global_id(1);
+    put(CELLIST_PASS(lists), cellist_cell2(lists, x, y), (float)(x * 1000 + y));
+}
+
+kernel void space(CELLIST_LISTS(Item, lists))
+{
+    const uint x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
+    put(CELLIST_PASS(lists), cellist_cell3(lists, x, y, z), (float)(x * 10000 + y * 100 + z));
+}
+
+kernel void nodes(CELLIST_LISTS(Item, lists), global uint* nodes)
+{
+    const uint i = get_global_id(0);
+    Item item = { 0.0f, i };
+    nodes[i] = cellist_insert(lists, i, item);
+    if (nodes[i] != CELLIST_NONE) cellist_get(lists, nodes[i]).key = (float)nodes[i];
+}
+)";
+
+constexpr auto two_containers = R"(
+#include <cellist/lists.clh>
+
+kernel void both(uint first, CELLIST_LISTS(Item, items), global const uint* heat,
+                 CELLIST_LISTS(Spark, sparks), uint count)
+{
+    const uint i = get_global_id(0);
+    if (i >= count) return;
+    Item item = { (float)i, first + i };
+    cellist_insert(items, i % 10, item);
+    if (i % 2) return;
+    Spark spark = { i, (ushort)heat[i], { 1, 2, (uchar)i } };
+    cellist_insert(sparks, cellist_cell2(sparks, i % 4, i % 5), spark);
+}
+
+kernel void more(CELLIST_LISTS(Spark, sparks))
+{
+    Spark spark = { 1000 + get_global_id(0), 0, { 0, 0, 0 } };
+    cellist_insert(sparks, 0u, spark);
+}
+
+// Reads one container and inserts into another of the same type.
+kernel void copy(CELLIST_LISTS(Item, from), CELLIST_LISTS(Item, to))
+{
+    const uint cell = get_global_id(0);
+    cellist_for_each(from, cell, node) cellist_insert(to, cell, cellist_get(from, node));
+}
+)";
+
+TEST_CASE("a work-item inserts any number of records, in divergent loops") {
+    constexpr cl_uint count = 3000;
+    Lists<Item> lists(device(), {101}, {.capacity_nodes = 5});
+    Kernel kernel(device(), source, "loops", lists);
+    Oracle<Item> oracle;
+    for (cl_uint i = 0; i < count; ++i)
+        for (cl_uint k = 0; k < i % 13; ++k) {
+            if ((i + k) % 3 == 0) continue;
+            oracle.emplace(k % 2 != 0 ? (i * 7 + k) % 101 : i % 101,
+                           Item{static_cast<cl_float>(k), i});
+            if (k > 9) break;
+        }
+    require_complete(lists.build(kernel, Range::padded(count), count), oracle.size());
+    require_sound(lists, oracle.size());
+    require_same(lists.download(), oracle);
+}
+
+TEST_CASE("kernels insert from ranges of two dimensions") {
+    Lists<Item> lists(device(), {37, 21});
+    Kernel kernel(device(), source, "plane", lists);
+    require_complete(lists.build(kernel, {40, 24}), 37 * 21, 40 * 24 - 37 * 21);
+    const HostLists<Item> host = lists.download();
+    for (cl_uint y = 0; y < 21; ++y)
+        for (cl_uint x = 0; x < 37; ++x) {
+            const auto list = host[{x, y}];
+            REQUIRE(list.size() == 1);
+            REQUIRE(list[0] == Item{static_cast<cl_float>(x * 1000 + y), y * 37 + x});
+        }
+}
+
+TEST_CASE("kernels insert from ranges of three dimensions") {
+    Lists<Item> lists(device(), {11, 7, 5});
+    Kernel kernel(device(), source, "space", lists);
+    require_complete(lists.build(kernel, {12, 8, 6}), 11 * 7 * 5, 12 * 8 * 6 - 11 * 7 * 5);
+    const HostLists<Item> host = lists.download();
+    for (cl_uint z = 0; z < 5; ++z)
+        for (cl_uint y = 0; y < 7; ++y)
+            for (cl_uint x = 0; x < 11; ++x) {
+                const auto list = host[{x, y, z}];
+                REQUIRE(list.size() == 1);
+                REQUIRE(list[0] ==
+                        Item{static_cast<cl_float>(x * 10000 + y * 100 + z), (z * 7 + y) * 11 + x});
+            }
+}
+
+TEST_CASE("an insert returns its node, which no other insert has") {
+    Lists<Item> lists(device(), {1000}, {.overflow = Overflow::drop, .capacity_nodes = 700});
+    Kernel kernel(device(), source, "nodes", lists);
+    const Buffer<cl_uint> device_nodes(device(), 1200);
+    const BuildReport report = lists.build(kernel, 1200, device_nodes);
+    std::vector<cl_uint> nodes = device_nodes.download();
+    for (std::size_t i = 1000; i < nodes.size(); ++i) REQUIRE(nodes[i] == 0xFFFFFFFFu);
+    std::erase(nodes, 0xFFFFFFFFu);
+    REQUIRE(nodes.size() == report.stored);
+    REQUIRE(report.stored == 700);
+    std::sort(nodes.begin(), nodes.end());
+    for (cl_uint i = 0; i < 700; ++i) REQUIRE(nodes[i] == i);
+    const HostLists<Item> host = lists.download();
+    for (const Item& item : host.records()) REQUIRE(static_cast<cl_uint>(item.key) < 700u);
+}
+
+TEST_CASE("one kernel inserts into containers of different types") {
+    constexpr cl_uint count = 1001;
+    Lists<Item> items(device(), {10}, {.capacity_nodes = 3});
+    Lists<Spark> sparks(device(), {4, 5}, {.capacity_nodes = 2000});
+    Kernel both(device(), two_containers, "both", items, sparks);
+    Kernel more(device(), two_containers, "more", items, sparks);
+    std::vector<cl_uint> host_heat(count);
+    for (cl_uint i = 0; i < count; ++i) host_heat[i] = i * 31 % 65536;
+    const Buffer<cl_uint> heat(device(), host_heat);
+
+    const auto insert = [&] {
+        both.run(Range::padded(count), cl_uint{5}, items, heat, sparks, count);
+    };
+    const BuildReport sparks_report = sparks.build([&] {
+        items.clear();
+        insert();
+        more.run(50, sparks);
+    });
+    require_complete(sparks_report, 501 + 50);
+    require_complete(items.build([&] {
+        sparks.clear();
+        insert();
+    }),
+                     count);
+
+    const HostLists<Item> host_items = items.download();
+    std::vector<Item> all = host_items.records();
+    REQUIRE(all.size() == count);
+    for (std::uint64_t cell = 0; cell < 10; ++cell)
+        for (const Item& item : host_items.cell(cell)) {
+            REQUIRE(item.id - 5 == static_cast<cl_uint>(item.key));
+            REQUIRE(static_cast<cl_uint>(item.key) % 10 == cell);
+        }
+    const HostLists<Spark> host_sparks = sparks.download();
+    REQUIRE(host_sparks.records().size() == 501);
+    for (cl_uint y = 0; y < 5; ++y)
+        for (cl_uint x = 0; x < 4; ++x)
+            for (const Spark& spark : host_sparks[{x, y}]) {
+                REQUIRE(spark.id % 4 == x);
+                REQUIRE(spark.id % 5 == y);
+                REQUIRE(spark.heat == spark.id * 31 % 65536);
+                REQUIRE(spark.rgb[1] == 2);
+                REQUIRE(spark.rgb[2] == spark.id % 256);
+            }
+}
+
+TEST_CASE("a kernel reads one container and inserts into another of the same type") {
+    CELLIST_RANDOM(random, 10u);
+    Lists<Item> from(device(), {40});
+    Lists<Item> to(device(), {40}, {.capacity_nodes = 1});
+    const Lists<Spark> sparks(device(), {1});
+    const Inserts<Item> inserts = random_inserts(4096, 40, random);
+    Inserter(from).build(from, inserts);
+    Kernel copy(device(), two_containers, "copy", from, sparks);
+    require_complete(to.build([&] { copy.run(40, from, to); }), 4096);
+    require_same(to.download(), oracle_of(inserts, 40));
+    require_same(from.download(), oracle_of(inserts, 40));
+}
+
+}  // namespace
+}  // namespace cellist::test

@@ -1,0 +1,90 @@
+// Records of any size and alignment come back byte for byte.
+#include "support/inserts.hpp"
+
+namespace cellist::test {
+namespace {
+
+struct One {
+    cl_uchar byte;
+};
+CELLIST_STRUCT(One, byte);
+struct Three {
+    cl_uchar bytes[3];
+};
+CELLIST_STRUCT(Three, bytes);
+struct Four {
+    cl_char a;
+    cl_uchar b;
+    cl_short c;
+};
+CELLIST_STRUCT(Four, a, b, c);
+struct Eight {
+    cl_ulong value;
+};
+CELLIST_STRUCT(Eight, value);
+struct Twelve {
+    cl_uint id;
+    cl_float pair[2];
+};
+CELLIST_STRUCT(Twelve, id, pair);
+struct Sixteen {
+    cl_float4 value;
+};
+CELLIST_STRUCT(Sixteen, value);
+struct Twenty {
+    Twelve inner;
+    cl_short grid[2][2];
+};
+CELLIST_STRUCT(Twenty, inner, grid);
+struct TwentyEight {
+    cl_int values[7];
+};
+CELLIST_STRUCT(TwentyEight, values);
+struct SixtyFour {
+    cl_float16 value;
+};
+CELLIST_STRUCT(SixtyFour, value);
+struct Hundred {
+    Twenty inner[2];
+    cl_uint rest[15];
+};
+CELLIST_STRUCT(Hundred, inner, rest);
+
+template <class T>
+void round_trip(std::size_t expected_bytes, std::size_t expected_node_bytes) {
+    REQUIRE(sizeof(T) == expected_bytes);
+    CELLIST_RANDOM(random, 20u + static_cast<unsigned>(sizeof(T)));
+    for (const std::size_t count : {0u, 1u, 144u, 5000u}) {
+        INFO(DeviceType<T>::name() << ", " << count << " records");
+        Inserts<T> inserts;
+        for (std::size_t i = 0; i < count; ++i) {
+            T record;
+            auto* bytes = reinterpret_cast<unsigned char*>(&record);
+            for (std::size_t at = 0; at < sizeof record; ++at)
+                bytes[at] = static_cast<unsigned char>(below(random, 256));
+            inserts.add(below(random, 31), record);
+        }
+        Lists<T> lists(device(), {29}, {.capacity_nodes = 100});
+        const std::uint64_t without_nodes = lists.pool_bytes() - 100 * expected_node_bytes;
+        REQUIRE(without_nodes < 29 * 4 + 1024);
+        const Oracle<T> oracle = oracle_of(inserts, 29);
+        require_complete(Inserter(lists).build(lists, inserts), oracle.size(),
+                         count - oracle.size());
+        require_sound(lists, oracle.size());
+        require_same(lists.download(), oracle);
+    }
+}
+
+TEST_CASE("a record of 1 byte round-trips") { round_trip<One>(1, 8); }
+TEST_CASE("a record of 3 bytes round-trips") { round_trip<Three>(3, 8); }
+TEST_CASE("a record of 4 bytes round-trips") { round_trip<Four>(4, 8); }
+TEST_CASE("a record of 8 bytes round-trips") { round_trip<Eight>(8, 16); }
+TEST_CASE("a record of 12 bytes round-trips") { round_trip<Twelve>(12, 16); }
+TEST_CASE("a record of 16 bytes round-trips") { round_trip<Sixteen>(16, 32); }
+TEST_CASE("a record of 20 bytes round-trips") { round_trip<Twenty>(20, 24); }
+TEST_CASE("a record of 28 bytes round-trips") { round_trip<TwentyEight>(28, 32); }
+TEST_CASE("a record of 64 bytes round-trips") { round_trip<SixtyFour>(64, 128); }
+TEST_CASE("a record of 100 bytes round-trips") { round_trip<Hundred>(100, 104); }
+
+}  // namespace
+}  // namespace cellist::test

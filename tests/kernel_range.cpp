@@ -1,0 +1,75 @@
+// A range launches exactly its work-items.
+#include "support/errors.hpp"
+#include "support/inserts.hpp"
+
+namespace cellist::test {
+namespace {
+
+constexpr auto source = R"(
+kernel void visit(global uint* visits, uint size)
+{
+    const uint x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
+    const uint i = x + get_global_size(0) * (y + get_global_size(1) * z);
+    atomic_inc(&visits[min(i, size)]);
+    if (x == 0 && y == 0 && z == 0) {
+        visits[size + 1] = get_work_dim();
+        visits[size + 2] = get_local_size(0);
+    }
+}
+)";
+
+TEST_CASE("every range runs exactly its work-items, primes and empty ranges too") {
+    Kernel kernel(device(), source, "visit");
+    for (const Range& range :
+         {Range(0), Range(1), Range(7), Range(64), Range(101), Range(1000), Range(7919),
+          Range(65'537), Range(0, 5), Range(5, 0), Range(13, 17), Range(1, 97), Range(97, 1),
+          Range(64, 33), Range(640, 7), Range(3, 5, 7), Range(16, 16, 3), Range(1, 1, 101),
+          Range(4, 0, 4)}) {
+        const std::size_t size = range.global[0] * range.global[1] * range.global[2];
+        INFO("range " << range.global[0] << " x " << range.global[1] << " x " << range.global[2]);
+        Buffer<cl_uint> visits(device(), size + 3);
+        visits.fill(0);
+        const cl::Event event = kernel.run(range, visits, static_cast<cl_uint>(size));
+        event.wait();
+        std::vector<cl_uint> host = visits.download();
+        if (size > 0) REQUIRE(host[size + 1] == range.dimensions);
+        REQUIRE(host[size] == 0);
+        host.resize(size);
+        REQUIRE(std::count(host.begin(), host.end(), 1u) == static_cast<std::ptrdiff_t>(size));
+    }
+}
+
+TEST_CASE("a range with a local size runs in such work-groups") {
+    Kernel kernel(device(), source, "visit");
+    Range range(96);
+    range.local = {32, 1, 1};
+    Buffer<cl_uint> visits(device(), 99);
+    visits.fill(0);
+    kernel.run(range, visits, cl_uint{96});
+    REQUIRE(visits.download()[98] == 32);
+}
+
+TEST_CASE("a padded range is the next multiple of the work-group") {
+    REQUIRE(Range::padded(0).global[0] == 0);
+    REQUIRE(Range::padded(1).global[0] == 256);
+    REQUIRE(Range::padded(256).global[0] == 256);
+    REQUIRE(Range::padded(257).global[0] == 512);
+    REQUIRE(Range::padded(100, 64).global[0] == 128);
+    REQUIRE(Range::padded(100, 64).local[0] == 64);
+}
+
+TEST_CASE("an impossible work-group is an error and leaves the kernel usable") {
+    Kernel kernel(device(), source, "visit");
+    Buffer<cl_uint> visits(device(), 103);
+    Range range(100);
+    range.local = {std::size_t{1} << 30, 1, 1};
+    const auto error = error_of<OpenClError>([&] { kernel.run(range, visits, cl_uint{100}); });
+    INFO(error.what());
+    REQUIRE(error.call() == "clEnqueueNDRangeKernel");
+    REQUIRE(contains(error.what(), "CL_INVALID_WORK_GROUP_SIZE"));
+    kernel.run(100, visits, cl_uint{100});
+    device().finish();
+}
+
+}  // namespace
+}  // namespace cellist::test

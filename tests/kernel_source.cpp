@@ -1,0 +1,117 @@
+// Sources include the library's headers without a path, and their errors have the user's own lines.
+#include "support/errors.hpp"
+#include "support/inserts.hpp"
+
+namespace cellist::test {
+namespace {
+
+constexpr auto insert_one = R"(
+kernel void insert_one(CELLIST_LISTS(Item, lists))
+{
+    Item item = { 1.0f, 7 };
+    cellist_insert(lists, 2, item);
+}
+)";
+
+TEST_CASE("the include line of the library may be written in any way") {
+    Lists<Item> lists(device(), {5});
+    for (const std::string include :
+         {"", "#include <cellist/lists.clh>\n", "#include<cellist/lists.clh>\n",
+          "#include \"cellist/lists.clh\"\n", "  #   include \t <cellist/lists.clh>   \n",
+          "\t#\tinclude\t<cellist/lists.clh>\t// the library\n",
+          "#include <cellist/lists.clh> /* twice */\n#include <cellist/lists.clh>\n",
+          "#include <cellist/lists.clh>\r\n", "// #include <cellist/lists.clh>\n",
+          "/* as in\n#include <cellist/lists.clh>\n*/\n",
+          "/* header */ // #include <cellist/lists.clh>\n#include <cellist/lists.clh>\n",
+          "#ifdef __OPENCL_VERSION__\n#include <cellist/lists.clh>\n#endif\n",
+          "#include <cellist/glm.clh>\n#include <cellist/lists.clh>\n",
+          "constant int include = 1;\n#include <cellist/lists.clh>\n"}) {
+        INFO(include);
+        Kernel kernel(device(), include + insert_one, "insert_one", lists);
+        require_complete(lists.build(kernel, 1), 1);
+    }
+}
+
+/// Where the compiler's log mentions the line of a file: "name:line".
+bool mentions(const OpenClError& error, const std::string& file_name, int line) {
+    return contains(error.log(), file_name + ":" + std::to_string(line) + ":") ||
+           contains(error.log(), file_name + "(" + std::to_string(line) + ")") ||
+           contains(error.log(), file_name + "\":" + std::to_string(line));
+}
+
+TEST_CASE("a source that does not compile ends in an error with the user's file and line") {
+    const Lists<Item> lists(device(), {5});
+    const Source source{.text =
+                            "// line 1\n"
+                            "#include <cellist/lists.clh>\n"
+                            "/* a comment\n"
+                            "   of two lines */\n"
+                            "kernel void broken(CELLIST_LISTS(Item, lists))\n"
+                            "{\n"
+                            "    uint cell = no_such_function(3);\n"
+                            "}\n",
+                        .file_name = "splat.cl"};
+    const auto error = error_of<OpenClError>([&] { Kernel(device(), source, "broken", lists); });
+    INFO(error.what());
+    REQUIRE(error.call() == "clBuildProgram");
+    REQUIRE(error.code() == CL_BUILD_PROGRAM_FAILURE);
+    REQUIRE(contains(error.log(), "no_such_function"));
+    REQUIRE(mentions(error, "splat.cl", 7));
+    REQUIRE(contains(error.what(), "CL_BUILD_PROGRAM_FAILURE"));
+    REQUIRE(contains(error.what(), error.log()));
+}
+
+TEST_CASE("the line of an error does not depend on the includes and types before it") {
+    const Lists<Item> lists(device(), {5});
+    for (const std::string before :
+         {"", "#include <cellist/lists.clh>\n",
+          "\n\n#include <cellist/glm.clh>\n#include <cellist/lists.clh>\n"}) {
+        const Source source{.text = before + "kernel void broken(void) { oops; }\n",
+                            .file_name = "my kernel.cl"};
+        const auto error =
+            error_of<OpenClError>([&] { Kernel(device(), source, "broken", lists); });
+        INFO(error.what());
+        REQUIRE(mentions(error, "my kernel.cl", 1 + static_cast<int>(count_of(before, "\n"))));
+    }
+}
+
+TEST_CASE("an unknown kernel name is an error") {
+    const Lists<Item> lists(device(), {5});
+    const auto error = error_of([&] { Kernel(device(), insert_one, "insert_two", lists); });
+    INFO(error.what());
+    REQUIRE(contains(error.what(), "CL_INVALID_KERNEL_NAME"));
+}
+
+TEST_CASE("options reach the compiler") {
+    const Buffer<cl_uint> out(device(), 1);
+    const std::string text = "kernel void answer(global uint* out) { *out = ANSWER; }";
+    for (const cl_uint answer : {42u, 43u}) {
+        Kernel kernel(device(),
+                      Source{.text = text, .options = "-DANSWER=" + std::to_string(answer)},
+                      "answer");
+        kernel.run(1, out);
+        REQUIRE(out.download()[0] == answer);
+    }
+}
+
+TEST_CASE("several kernels come from one source") {
+    Lists<Item> lists(device(), {5});
+    const std::string text = std::string("#include <cellist/lists.clh>\n") + insert_one + R"(
+kernel void count(CELLIST_LISTS(Item, lists), global uint* count)
+{
+    cellist_for_each(lists, 2, node) ++*count;
+}
+)";
+    Kernel insert(device(), text, "insert_one", lists);
+    Kernel count(device(), text, "count", lists);
+    REQUIRE(insert.name() == "insert_one");
+    REQUIRE(count.name() == "count");
+    Buffer<cl_uint> out(device(), 1);
+    out.fill(0);
+    lists.build(insert, 144);
+    count.run(1, lists, out);
+    REQUIRE(out.download()[0] == 144);
+}
+
+}  // namespace
+}  // namespace cellist::test

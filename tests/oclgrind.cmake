@@ -1,0 +1,30 @@
+# Runs the tests tagged [oclgrind] in the simulator and fails on what it reports.
+#
+#   oclgrind   the program
+#   tests      cellist_tests
+#   log        file for the simulator's reports
+#
+# Two reads race with writes on purpose. Both are hints, whose old value costs one more atomic and
+# nothing else; a shard that was full once stays full, so neither can be wrong the other way round.
+#   allocated   a shard's counter, looked at before an atomic increment is tried on it
+#   pool_full   set, always to 1, by every work-item that saw all shards full
+cmake_minimum_required(VERSION 3.25)
+
+set(ENV{CELLIST_DEVICE} "Oclgrind")
+execute_process(
+    COMMAND "${oclgrind}" --data-races --check-api --max-errors 100000 --log "${log}"
+        "${tests}" "[oclgrind]"
+    COMMAND_ECHO STDOUT
+    COMMAND_ERROR_IS_FATAL ANY)
+
+file(READ "${log}" text)
+string(REGEX MATCHALL "(^|\n)[^ \t\n][^\n]*" reports "${text}")
+string(REGEX MATCHALL "(^|\n)Read-write data race at global memory[^\n]*" races "${text}")
+string(REGEX MATCHALL "load volatile i32[^\n]*%(allocated|pool_full)" hints "${text}")
+list(LENGTH reports report_count)
+list(LENGTH races race_count)
+list(LENGTH hints hint_count)
+if(NOT report_count EQUAL race_count OR NOT race_count EQUAL hint_count)
+    message(FATAL_ERROR "${text}\n${report_count} reports, ${hint_count} of them expected")
+endif()
+message(STATUS "nothing reported but ${hint_count} reads of hints")

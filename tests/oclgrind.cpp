@@ -1,0 +1,58 @@
+// Every kernel of the library once, at sizes that a simulator runs in seconds. ctest runs these tests
+// under Oclgrind too, which reports invalid accesses and data races.
+#include "support/inserts.hpp"
+
+namespace cellist::test {
+namespace {
+
+TEST_CASE("a small container is built, grown, sorted, validated and downloaded", "[oclgrind]") {
+    CELLIST_RANDOM(random, 170u);
+    const Inserts<Item> inserts = random_inserts(200, 13, random);
+    for (const Allocation allocation : {Allocation::sharded, Allocation::global}) {
+        Lists<Item> lists(device(), {4, 3}, {.capacity_nodes = 150, .allocation = allocation});
+        const Oracle<Item> oracle = oracle_of(inserts, 12);
+        const BuildReport report = Inserter(lists).build(lists, inserts);
+        require_complete(report, oracle.size(), 200 - oracle.size());
+        REQUIRE(report.passes == 2);
+        lists.sort(&Item::key);
+        require_sound(lists, oracle.size());
+        require_same(lists.download(), oracle);
+    }
+}
+
+TEST_CASE("a small pool of several shards overflows", "[oclgrind]") {
+    CELLIST_RANDOM(random, 171u);
+    Lists<Item> lists(device(), {10}, {.overflow = Overflow::drop, .capacity_nodes = 2100});
+    const BuildReport report = Inserter(lists).build(lists, random_inserts(2200, 10, random));
+    REQUIRE(report.stored == 2100);
+    REQUIRE(report.dropped == 100);
+    require_sound(lists, 2100);
+}
+
+TEST_CASE("the nearest records of small lists are taken", "[oclgrind]") {
+    CELLIST_RANDOM(random, 172u);
+    Lists<Item> lists(device(), {10});
+    Inserter(lists).build(lists, random_inserts(93, 10, random));
+    Kernel kernel(device(), R"(
+#include <cellist/lists.clh>
+kernel void nearest(CELLIST_LISTS(Item, lists), global uint* sorted)
+{
+    Item out[4];
+    const uint cell = get_global_id(0);
+    const uint found = cellist_nearest(lists, cell, key, 4, out);
+    sorted[cell] = found;
+    for (uint i = 1; i < found; ++i)
+        if (out[i - 1].key > out[i].key) sorted[cell] = 99;
+}
+)",
+                  "nearest", lists);
+    const Buffer<cl_uint> sorted(device(), 10);
+    kernel.run(10, lists, sorted);
+    const HostLists<Item> host = lists.download();
+    const std::vector<cl_uint> found = sorted.download();
+    for (std::uint64_t cell = 0; cell < 10; ++cell)
+        REQUIRE(found[cell] == std::min<std::size_t>(4, host.cell(cell).size()));
+}
+
+}  // namespace
+}  // namespace cellist::test

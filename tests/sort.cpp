@@ -1,0 +1,146 @@
+// Lists of any length are sorted by a key, then by their other members.
+#include <bit>
+#include <limits>
+#include <tuple>
+
+#include "support/errors.hpp"
+#include "support/inserts.hpp"
+
+namespace cellist::test {
+namespace {
+
+bool by_key(const Item& a, const Item& b) { return std::tie(a.key, a.id) < std::tie(b.key, b.id); }
+bool by_id(const Item& a, const Item& b) { return a.id < b.id; }
+
+/// Requires that each cell holds the oracle's records in the order of `before`.
+template <class T>
+void require_sorted(const HostLists<T>& found, const Oracle<T>& oracle, auto before) {
+    REQUIRE(found.records().size() == oracle.size());
+    for (std::uint64_t cell = 0; cell < found.cells(); ++cell) {
+        std::vector<T> expected;
+        const auto [begin, end] = oracle.equal_range(cell);
+        for (auto entry = begin; entry != end; ++entry) expected.push_back(entry->second);
+        std::sort(expected.begin(), expected.end(), before);
+        const auto list = found.cell(cell);
+        if (!std::equal(list.begin(), list.end(), expected.begin(), expected.end()))
+            FAIL("cell " << cell << " is not sorted: " << list.size() << " records");
+    }
+}
+
+TEST_CASE("lists of every length are sorted") {
+    CELLIST_RANDOM(random, 70u);
+    const std::vector<cl_uint> lengths{0, 1, 2, 3, 4, 5, 7, 8, 31, 32, 33, 1000, 0, 1023, 1024};
+    Inserts<Item> inserts;
+    for (cl_uint cell = 0; cell < lengths.size(); ++cell)
+        for (cl_uint i = 0; i < lengths[cell]; ++i)
+            inserts.add(cell, {static_cast<cl_float>(below(random, 500)) - 250.0f,
+                               static_cast<cl_uint>(inserts.size())});
+    inserts.shuffle(random);
+    Lists<Item> lists(device(), {lengths.size()});
+    Inserter(lists).build(lists, inserts);
+    const Oracle<Item> oracle = oracle_of(inserts, lengths.size());
+
+    lists.sort(&Item::key);
+    require_sound(lists, inserts.size());
+    require_sorted(lists.download(), oracle, by_key);
+    SECTION("twice") {
+        lists.sort(&Item::key);
+        require_sorted(lists.download(), oracle, by_key);
+    }
+    SECTION("by another member afterwards") {
+        lists.sort(&Item::id);
+        require_sound(lists, inserts.size());
+        require_sorted(lists.download(), oracle, by_id);
+    }
+}
+
+TEST_CASE("a list of 100,000 nodes is sorted") {
+    CELLIST_RANDOM(random, 71u);
+    Inserts<Item> inserts = random_inserts(100'000, 1, random);
+    for (cl_uint& cell : inserts.cells) cell = 2;
+    Lists<Item> lists(device(), {5});
+    Inserter(lists).build(lists, inserts);
+    lists.sort(&Item::key);
+    require_sound(lists, 100'000);
+    require_sorted(lists.download(), oracle_of(inserts, 5), by_key);
+}
+
+TEST_CASE("lists that are sorted already, upwards or downwards, are sorted") {
+    for (const bool upwards : {true, false}) {
+        Inserts<Item> inserts;
+        for (cl_uint i = 0; i < 3000; ++i)
+            inserts.add(0, {static_cast<cl_float>(upwards ? i : 3000 - i), i});
+        Lists<Item> lists(device(), {1});
+        Inserter(lists).build(lists, inserts);
+        lists.sort(&Item::key);
+        require_sorted(lists.download(), oracle_of(inserts, 1), by_key);
+    }
+}
+
+TEST_CASE("lists are sorted by an expression of the record") {
+    CELLIST_RANDOM(random, 72u);
+    const Inserts<Item> inserts = random_inserts(4096, 10, random);
+    Lists<Item> lists(device(), {10});
+    Inserter(lists).build(lists, inserts);
+    const Oracle<Item> oracle = oracle_of(inserts, 10);
+
+    lists.sort_by("record.key * record.key");
+    require_sorted(lists.download(), oracle, [](const Item& a, const Item& b) {
+        return std::tuple(a.key * a.key, a.key, a.id) < std::tuple(b.key * b.key, b.key, b.id);
+    });
+    lists.sort_by("-(long)record.id");
+    require_sorted(lists.download(), oracle,
+                   [](const Item& a, const Item& b) { return a.id > b.id; });
+    lists.sort_by("(uchar)(record.id % 7)");
+    require_sorted(lists.download(), oracle, [](const Item& a, const Item& b) {
+        return std::tuple(a.id % 7, a.key, a.id) < std::tuple(b.id % 7, b.key, b.id);
+    });
+    lists.sort_by("record.key < 0 ? 1 : -1");
+    require_sorted(lists.download(), oracle, [](const Item& a, const Item& b) {
+        return std::tuple(a.key < 0, a.key, a.id) < std::tuple(b.key < 0, b.key, b.id);
+    });
+    require_sound(lists, 4096);
+}
+
+TEST_CASE("an expression that does not compile ends in an error with the compiler's log") {
+    CELLIST_RANDOM(random, 73u);
+    Lists<Item> lists(device(), {10});
+    const Inserts<Item> inserts = random_inserts(144, 10, random);
+    Inserter(lists).build(lists, inserts);
+    for (const char* expression : {"record.no_such_member", "record.key +* 3", ""}) {
+        const auto error = error_of<OpenClError>([&] { lists.sort_by(expression); });
+        INFO(error.what());
+        REQUIRE(error.call() == "clBuildProgram");
+        REQUIRE_FALSE(error.log().empty());
+        REQUIRE(contains(error.what(), error.log()));
+    }
+    const auto error = error_of<OpenClError>([&] { lists.sort_by("record.no_such_member"); });
+    REQUIRE(contains(error.log(), "no_such_member"));
+    require_sound(lists, 144);
+    lists.sort(&Item::key);
+    require_sorted(lists.download(), oracle_of(inserts, 10), by_key);
+}
+
+TEST_CASE("sorted lists are built anew") {
+    CELLIST_RANDOM(random, 74u);
+    Lists<Item> lists(device(), {10}, {.capacity_nodes = 100});
+    Inserter inserter(lists);
+    for (const std::size_t count : {93u, 4096u, 7u}) {
+        const Inserts<Item> inserts = random_inserts(count, 10, random);
+        require_complete(inserter.build(lists, inserts), count);
+        require_same(lists.download(), oracle_of(inserts, 10));
+        lists.sort(&Item::key);
+        require_sorted(lists.download(), oracle_of(inserts, 10), by_key);
+    }
+}
+
+TEST_CASE("empty containers are sorted") {
+    for (const Shape& shape : {Shape{0}, Shape{1}, Shape{100, 3}}) {
+        Lists<Item> lists(device(), shape);
+        lists.sort(&Item::key);
+        require_sound(lists, 0);
+    }
+}
+
+}  // namespace
+}  // namespace cellist::test

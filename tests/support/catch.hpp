@@ -1,0 +1,15 @@
+#pragma once
+// Catch2, version 2 or 3.
+
+#if __has_include(<catch2/catch_test_macros.hpp>)
+#include <catch2/catch_message.hpp>
+#include <catch2/catch_session.hpp>
+#include <catch2/catch_template_test_macros.hpp>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/generators/catch_generators.hpp>
+#else
+#ifdef CELLIST_TESTS_MAIN
+#define CATCH_CONFIG_RUNNER
+#endif
+#include <catch2/catch.hpp>
+#endif
