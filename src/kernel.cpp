@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstring>
 #include <map>
 #include <numeric>
 #include <regex>
@@ -19,6 +20,7 @@ using detail::opencl;
 /// What a kernel expects as one parameter.
 struct Parameter {
     std::string declaration;  ///< e.g. "uint count"
+    std::string record;       ///< what the nodes of a container hold; else empty
     Arguments::Kind kind = Arguments::Kind::value;
     std::size_t size = 0;  ///< in bytes; 0 if not known
 };
@@ -41,19 +43,71 @@ std::string without_library_includes(const std::string& text, bool& uses_glm) {
     return out.append(rest, text.end());
 }
 
-std::string whole_source(const Source& source, const detail::Definitions& definitions,
+/// A program's text, put together from parts, and which lines come from which.
+class ProgramText {
+public:
+    void add(std::string_view part, const std::string& file_name) {
+        parts_.push_back({lines_ + 1, file_name});
+        std::string escaped;
+        for (const char c : file_name) {
+            if (c == '"' || c == '\\') escaped += '\\';
+            escaped += c;
+        }
+        append("#line 1 \"" + escaped + "\"\n");
+        append(part);
+        append("\n");
+    }
+
+    [[nodiscard]] const std::string& text() const { return text_; }
+
+    /// A compiler's log with the names and lines of the parts. NVIDIA's compiler does not follow
+    /// #line, and counts the lines of the whole text of "<kernel>".
+    [[nodiscard]] std::string in_parts(const std::string& log) const {
+        static const std::regex place("<kernel>:(\\d+)");
+        std::string out;
+        auto rest = log.begin();
+        for (std::sregex_iterator match(log.begin(), log.end(), place), end; match != end;
+             ++match) {
+            const std::size_t line = std::stoul((*match)[1]);
+            const auto behind = std::find_if(parts_.begin(), parts_.end(),
+                                             [&](const Part& part) { return part.line > line; });
+            out.append(rest, (*match)[0].first);
+            rest = (*match)[0].second;
+            if (behind == parts_.begin()) continue;
+            const Part& part = *std::prev(behind);
+            out += part.file_name + ":" + std::to_string(line - part.line);
+        }
+        return out.append(rest, log.end());
+    }
+
+private:
+    struct Part {
+        std::size_t line;  ///< of its #line, in the whole text
+        std::string file_name;
+    };
+
+    void append(std::string_view part) {
+        text_ += part;
+        lines_ += static_cast<std::size_t>(std::count(part.begin(), part.end(), '\n'));
+    }
+
+    std::string text_;
+    std::size_t lines_ = 0;
+    std::vector<Part> parts_;
+};
+
+ProgramText whole_source(const Source& source, const detail::Definitions& definitions,
                          cl_uint modes) {
     bool uses_glm = false;
     const std::string text = without_library_includes(source.text, uses_glm);
     detail::Definitions all = definitions;
     if (uses_glm) all.add(detail::glm_source());
-    std::string whole = "#define CELLIST_MODES " + std::to_string(modes) + "u\n";
-    whole += "#line 1 \"cellist/view.h\"\n";
-    whole += kernels::view_h;
-    whole += "\n#line 1 \"cellist/lists.clh\"\n";
-    whole += kernels::lists_clh;
-    whole += "\n#line 1 \"structs\"\n" + all.source();
-    whole += "\n#line 1 \"" + source.file_name + "\"\n" + text + "\n";
+    ProgramText whole;
+    whole.add("#define CELLIST_MODES " + std::to_string(modes) + "u", "modes");
+    whole.add(kernels::view_h, "cellist/view.h");
+    whole.add(kernels::lists_clh, "cellist/lists.clh");
+    whole.add(all.source(), "structs");
+    whole.add(text, source.file_name);
     return whole;
 }
 
@@ -62,16 +116,16 @@ cl::Program build(detail::DeviceState& device, const Source& source,
     if (definitions.needs_fp64 && !device.info.fp64)
         throw Error("a struct has members of type double, which " + device.info.name +
                     " does not support");
+    const ProgramText whole = whole_source(source, definitions, modes);
     try {
-        return device.program(whole_source(source, definitions, modes),
-                              "-cl-std=CL1.2 -cl-kernel-arg-info " + source.options);
+        return device.program(whole.text(), "-cl-std=CL1.2 -cl-kernel-arg-info " + source.options);
     } catch (const OpenClError& error) {
         std::smatch what;
         static const std::regex check("cellist_layout_of_(\\w+)");
         if (std::regex_search(error.log(), what, check))
             throw Error("the layout of a struct differs between the host and " + device.info.name +
                         ": " + what[1].str() + " (struct_member)");
-        throw;
+        throw OpenClError(error.call(), error.code(), whole.in_parts(error.log()));
     }
 }
 
@@ -101,6 +155,15 @@ std::string text_of(const cl::Kernel& kernel, cl_uint index, cl_kernel_arg_info 
     return text.substr(0, text.find('\0'));
 }
 
+/// "Hit" for "cellist_node_Hit*"; empty for other types.
+std::string record_of_nodes(const std::string& type) {
+    constexpr std::string_view mark = "cellist_node_";
+    const std::size_t at = type.find(mark);
+    if (at == std::string::npos) return {};
+    const std::string rest = type.substr(at + mark.size());
+    return rest.substr(0, rest.find_first_of(" *"));
+}
+
 std::vector<Parameter> parameters_of(const cl::Kernel& kernel,
                                      const detail::Definitions& definitions) {
     std::vector<Parameter> parameters(kernel.getInfo<CL_KERNEL_NUM_ARGS>());
@@ -109,6 +172,7 @@ std::vector<Parameter> parameters_of(const cl::Kernel& kernel,
         const auto address = kernel.getArgInfo<CL_KERNEL_ARG_ADDRESS_QUALIFIER>(i);
         Parameter& parameter = parameters[i];
         parameter.declaration = type + " " + text_of(kernel, i, CL_KERNEL_ARG_NAME);
+        parameter.record = record_of_nodes(type);
         if (type == "sampler_t")
             parameter.kind = Arguments::Kind::sampler;
         else if (address == CL_KERNEL_ARG_ADDRESS_LOCAL)
@@ -166,6 +230,29 @@ cl::NDRange global_range(const Range& range) {
     }
 }
 
+cl::Kernel kernel_called(const cl::Program& program, const std::string& name,
+                         const Source& source) {
+    try {
+        return {program, name.c_str()};
+    } catch (const cl::Error& error) {
+        throw OpenClError(error.what(), error.err(),
+                          source.file_name + " has no kernel called '" + name + "'");
+    }
+}
+
+std::string contents(std::string_view record) {
+    if (record.empty()) return "a buffer";
+    return std::string("lists of ").append(record);
+}
+
+cl_context context_of(const std::byte* memory_handle) {
+    cl_mem memory = nullptr;
+    std::memcpy(&memory, memory_handle, sizeof(cl_mem));
+    cl_context context = nullptr;
+    clGetMemObjectInfo(memory, CL_MEM_CONTEXT, sizeof(cl_context), &context, nullptr);
+    return context;
+}
+
 /// The kernel, compiled for containers of some modes.
 struct Variant {
     cl::Kernel kernel;
@@ -173,18 +260,22 @@ struct Variant {
     std::size_t work_group_limit = 0;
 
     /// Throws Error if an argument does not fit the parameter. Drivers do not all check this: PoCL
-    /// takes a value of any size.
-    void check(const std::string& name, cl_uint index, const Arguments::Argument& argument) const {
+    /// takes a value of any size, and none knows what a buffer holds.
+    void check(const detail::DeviceState& device, const std::string& name, cl_uint index,
+               const Arguments::Argument& argument, const std::byte* data) const {
         const Parameter& parameter = parameters[index];
-        const bool right_kind = argument.kind == parameter.kind;
-        if (right_kind && (parameter.size == 0 || argument.size == parameter.size)) return;
-        const std::string where = "kernel " + name + ", parameter " + std::to_string(index) + " '" +
-                                  parameter.declaration + "': takes ";
-        if (!right_kind)
-            throw Error(where + kind_name(parameter.kind) + ", was given " +
-                        kind_name(argument.kind));
-        throw Error(where + std::to_string(parameter.size) + " bytes, was given " +
-                    std::to_string(argument.size));
+        const auto fail = [&](const std::string& takes, const std::string& given) {
+            throw Error("kernel " + name + ", parameter " + std::to_string(index) + " '" +
+                        parameter.declaration + "': takes " + takes + ", was given " + given);
+        };
+        if (argument.kind != parameter.kind)
+            fail(kind_name(parameter.kind), kind_name(argument.kind));
+        if (parameter.size != 0 && argument.size != parameter.size)
+            fail(std::to_string(parameter.size) + " bytes", std::to_string(argument.size));
+        if (argument.record != parameter.record)
+            fail(contents(parameter.record), contents(argument.record));
+        if (argument.kind == Arguments::Kind::memory && context_of(data) != device.context())
+            fail("memory of " + device.info.name, "memory of another context");
     }
 };
 
@@ -203,7 +294,7 @@ struct Kernel::Impl {
         const cl::Program program = build(*device, source, definitions, modes);
         return opencl([&]() -> Variant& {
             Variant made;
-            made.kernel = cl::Kernel(program, name.c_str());
+            made.kernel = kernel_called(program, name, source);
             made.parameters = parameters_of(made.kernel, definitions);
             made.work_group_limit =
                 made.kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device->device);
@@ -233,8 +324,9 @@ cl::Event Kernel::enqueue(const Range& range, const Arguments& arguments) {
                     " parameters and was given " + std::to_string(list.size()) +
                     " (a container counts as 4)");
     for (cl_uint i = 0; i < list.size(); ++i) {
-        variant.check(impl_->name, i, list[i]);
-        opencl([&] { variant.kernel.setArg(i, list[i].size, arguments.data(list[i])); });
+        const std::byte* data = arguments.data(list[i]);
+        variant.check(*impl_->device, impl_->name, i, list[i], data);
+        opencl([&] { variant.kernel.setArg(i, list[i].size, data); });
     }
 
     cl::Event event;

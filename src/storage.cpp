@@ -40,15 +40,16 @@ ListStorage::ListStorage(std::shared_ptr<DeviceState> device, const Definitions&
       mode_(mode),
       node_bytes_(node_bytes) {
     definitions_.modes = mode;
+    const std::uint64_t head_bytes = head_words * sizeof(cl_uint);
     const std::uint64_t allocation = device_->info.max_allocation_bytes;
-    if (head_words > allocation / sizeof(cl_uint))
+    if (head_bytes > allocation)
+        throw Error("a shape of " + shape.to_string() + " cells exceeds this device's limit of " +
+                    std::to_string(allocation / (head_bytes / shape.cells())) + " cells (" +
+                    mebibytes(allocation) + " per allocation)");
+    if (head_bytes > options.budget_bytes)
         throw Error("the heads of a shape of " + shape.to_string() + " cells take " +
-                    mebibytes(head_words * sizeof(cl_uint)) + ", over this device's limit of " +
-                    mebibytes(allocation) + " per allocation");
-    if (head_words * sizeof(cl_uint) > options.budget_bytes)
-        throw Error("the heads of a shape of " + shape.to_string() + " cells take " +
-                    mebibytes(head_words * sizeof(cl_uint)) + ", over the budget of " +
-                    mebibytes(options.budget_bytes));
+                    mebibytes(head_bytes) + ", over the budget of " +
+                    mebibytes(options.budget_bytes) + ": raise budget_bytes");
     heads_ = Memory(device_, head_words, sizeof(cl_uint), "head buffer");
 }
 
@@ -61,7 +62,7 @@ void ListStorage::add_to(Arguments& arguments) const {
         shard_bits_,
         mode_,
         slots_};
-    arguments.add(nodes_.cl());
+    arguments.add_nodes(nodes_.cl(), record().name);
     arguments.add(heads_.cl());
     arguments.add(shards_.cl());
     arguments.append(Arguments::Kind::value, &view, sizeof view);

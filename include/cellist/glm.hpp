@@ -74,7 +74,9 @@ struct DeviceType<glm::mat<count, count, T, glm::defaultp>> {
     static void define(detail::Definitions& definitions) { detail::define_glm<T>(definitions); }
     static void add_scalars(const std::string& path, std::vector<std::string>& scalars) {
         for (glm::length_t i = 0; i < count; ++i)
-            Column::add_scalars(path + ".columns[" + std::to_string(i) + "]", scalars);
+            Column::add_scalars(
+                std::string(path).append(".columns[").append(std::to_string(i)).append("]"),
+                scalars);
     }
 };
 

@@ -3,6 +3,10 @@
 #include <array>
 #include <concepts>
 #include <cstddef>
+#include <string>
+#include <utility>
+
+#include <cellist/error.hpp>
 
 namespace cellist {
 
@@ -17,15 +21,10 @@ struct Range {
     std::array<std::size_t, 3> local{0, 0, 0};
     std::size_t dimensions = 1;
 
-    // An integer is a range: run(1000, ...) reads as it should.
-    Range(std::integral auto x)  // NOLINT(google-explicit-constructor)
-        : global{static_cast<std::size_t>(x), 1, 1} {}
-    Range(std::integral auto x, std::integral auto y)
-        : global{static_cast<std::size_t>(x), static_cast<std::size_t>(y), 1}, dimensions(2) {}
-    Range(std::integral auto x, std::integral auto y, std::integral auto z)
-        : global{static_cast<std::size_t>(x), static_cast<std::size_t>(y),
-                 static_cast<std::size_t>(z)},
-          dimensions(3) {}
+    /// Throw Error if an extent is negative.
+    Range(std::integral auto x) : Range(1, {x, 1, 1}) {}  // NOLINT(google-explicit-constructor)
+    Range(std::integral auto x, std::integral auto y) : Range(2, {x, y, 1}) {}
+    Range(std::integral auto x, std::integral auto y, std::integral auto z) : Range(3, {x, y, z}) {}
 
     /// At least `items` work-items, in whole work-groups of `group`. The kernel returns early in
     /// those behind the last item: `if (get_global_id(0) >= count) return;`.
@@ -34,6 +33,19 @@ struct Range {
         range.local = {group, 1, 1};
         return range;
     }
+
+private:
+    /// One extent of a range, from any type of integer.
+    struct Extent {
+        std::size_t value;
+        Extent(std::integral auto extent)  // NOLINT(google-explicit-constructor)
+            : value(static_cast<std::size_t>(extent)) {
+            if (std::cmp_less(extent, 0))
+                throw Error("a range of " + std::to_string(extent) + " work-items is negative");
+        }
+    };
+    Range(std::size_t count, const std::array<Extent, 3>& extents)
+        : global{extents[0].value, extents[1].value, extents[2].value}, dimensions(count) {}
 };
 
 }  // namespace cellist

@@ -85,6 +85,12 @@ constexpr Member<Owner, M> member_of(const char* name, M Owner::*pointer, std::s
     return {name, pointer, offset};
 }
 
+/// A type that kernels know: a scalar, a vector, an adapted struct, or an array of these.
+template <class T>
+concept KnownOnDevice = requires {
+    DeviceType<T>::size;
+};
+
 template <class T, class... Members>
 struct Description {
     const char* name;
@@ -98,8 +104,12 @@ struct Description {
         std::apply(
             [&](const auto&... member) {
                 (([&] {
-                     using OnDevice =
-                         DeviceType<typename std::remove_cvref_t<decltype(member)>::type>;
+                     using M = typename std::remove_cvref_t<decltype(member)>::type;
+                     static_assert(KnownOnDevice<M>,
+                                   "CELLIST_STRUCT: a member's type has no counterpart in OpenCL "
+                                   "C: use scalars other than bool, cl_ vectors, arrays, and "
+                                   "structs that are adapted before");
+                     using OnDevice = DeviceType<M>;
                      end = round_up(end, OnDevice::alignment);
                      same = same && end == member.offset;
                      end += OnDevice::size;
@@ -167,11 +177,14 @@ struct DeviceType<T[count]> {
     static constexpr std::size_t size = DeviceType<T>::size * count;
     static constexpr std::size_t alignment = DeviceType<T>::alignment;
     static std::string name() { return DeviceType<T>::name(); }
-    static std::string extents() { return "[" + std::to_string(count) + "]" + inner_extents(); }
+    static std::string extents() {
+        return std::string("[").append(std::to_string(count)).append("]").append(inner_extents());
+    }
     static void define(detail::Definitions& definitions) { DeviceType<T>::define(definitions); }
     static void add_scalars(const std::string& path, std::vector<std::string>& scalars) {
         for (std::size_t i = 0; i < count; ++i)
-            DeviceType<T>::add_scalars(path + "[" + std::to_string(i) + "]", scalars);
+            DeviceType<T>::add_scalars(
+                std::string(path).append("[").append(std::to_string(i)).append("]"), scalars);
     }
 
 private:

@@ -1,4 +1,4 @@
-// error: DeviceType<
+// error: type has no counterpart in OpenCL C
 #include <cellist/cellist.hpp>
 
 struct Hit {

@@ -1,4 +1,4 @@
-// error: DeviceType<Point>
+// error: type has no counterpart in OpenCL C
 #include <cellist/cellist.hpp>
 
 struct Point {

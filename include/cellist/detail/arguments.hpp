@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstring>
 #include <span>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -30,8 +31,9 @@ public:
     enum class Kind { value, memory, sampler, local };
     struct Argument {
         Kind kind;
-        std::size_t offset;  ///< into the bytes; unused for local memory
-        std::size_t size;    ///< in bytes
+        std::size_t offset;       ///< into the bytes; unused for local memory
+        std::size_t size;         ///< in bytes
+        std::string_view record;  ///< what a container's nodes hold; else empty
     };
 
     template <class T>
@@ -56,14 +58,21 @@ public:
         const cl_sampler handle = sampler();
         append(Kind::sampler, &handle, sizeof handle);
     }
-    void add(const LocalMemory& local) { arguments_.push_back({Kind::local, 0, local.size_bytes}); }
+    void add(const LocalMemory& local) {
+        arguments_.push_back({Kind::local, 0, local.size_bytes, {}});
+    }
     void append(Kind kind, const void* data, std::size_t size) {
         const std::size_t offset = bytes_.size();
         bytes_.resize(offset + size);
         std::memcpy(bytes_.data() + offset, data, size);
-        arguments_.push_back({kind, offset, size});
+        arguments_.push_back({kind, offset, size, {}});
     }
 
+    /// The nodes of a container. `record` must live as long as the arguments.
+    void add_nodes(const cl::Memory& nodes, std::string_view record) {
+        add(nodes);
+        arguments_.back().record = record;
+    }
     /// Tells that a container among the arguments has this mode.
     void add_mode(cl_uint mode) { modes_ |= mode; }
     /// The modes of all containers among the arguments.
