@@ -8,8 +8,9 @@
 
 kernel void cellist_gather(CELLIST_LISTS(CELLIST_RECORD, lists), uint begin, uint end,
                            global const uint* offsets, global CELLIST_RECORD* records) {
-    const uint cell = begin + get_global_id(0);
-    if (cell >= end) return;
+    const size_t item = get_global_id(0);
+    if (item >= end - begin) return;
+    const uint cell = begin + (uint)item;
     uint at = offsets[cell] - offsets[begin];
     cellist_for_each(lists, cell, node) records[at++] = cellist_get(lists, node);
 }

@@ -10,5 +10,5 @@ kernel void cellist_lengths(CELLIST_LISTS(CELLIST_RECORD, lists), global uint* l
     if (cell >= cellist_cells(lists)) return;
     uint length = 0;
     cellist_for_each(lists, cell, node) ++length;
-    lengths[at + cell] = length;
+    lengths[(ulong)at + cell] = length;
 }

@@ -90,19 +90,24 @@ Device Device::choose(std::string_view selector) {
         const std::vector<cl::Device> devices = all_devices();
         if (devices.empty()) throw Error(no_platform);
 
+        std::string known;
+        for (std::size_t i = 0; i < devices.size(); ++i)
+            known += (i == 0 ? "" : ", ") + std::to_string(i) + " = " + describe(devices[i]).name;
+
         std::size_t index = 0;
         const char* end = selector.data() + selector.size();
         const auto [stop, error] = std::from_chars(selector.data(), end, index);
-        if (error == std::errc() && stop == end && index < devices.size())
-            return Device(devices[index]);
+        if (error != std::errc::invalid_argument && stop == end) {
+            if (error == std::errc() && index < devices.size()) return Device(devices[index]);
+            throw Error("no device has the index " + std::string(selector) +
+                        "; there are: " + known);
+        }
 
-        std::string known;
-        for (std::size_t i = 0; i < devices.size(); ++i) {
-            const DeviceInfo info = describe(devices[i]);
+        for (const cl::Device& device : devices) {
+            const DeviceInfo info = describe(device);
             if (!selector.empty() &&
                 lower(info.name + "\n" + info.platform).find(lower(selector)) != std::string::npos)
-                return Device(devices[i]);
-            known += (i == 0 ? "" : ", ") + std::to_string(i) + " = " + info.name;
+                return Device(device);
         }
         throw Error("no device is called '" + std::string(selector) + "'; there are: " + known);
     });

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <map>
 #include <numeric>
@@ -19,8 +20,9 @@ using detail::opencl;
 
 /// What a kernel expects as one parameter.
 struct Parameter {
-    std::string declaration;  ///< e.g. "uint count"
-    std::string record;       ///< what the nodes of a container hold; else empty
+    std::string declaration;    ///< e.g. "uint count"
+    std::string type;           ///< of the value or of what a pointer points to, e.g. "uint"
+    bool is_container = false;  ///< the nodes of a container; `type` is their record
     Arguments::Kind kind = Arguments::Kind::value;
     std::size_t size = 0;  ///< in bytes; 0 if not known
 };
@@ -111,8 +113,22 @@ ProgramText whole_source(const Source& source, const detail::Definitions& defini
     return whole;
 }
 
+/// A log that mentions names which users never wrote, with what is behind them.
+std::string with_hints(std::string log) {
+    std::smatch what;
+    static const std::regex node("cellist_node_(\\w+)");
+    static const std::regex key("cellist_key_(\\w+)");
+    if (std::regex_search(log, what, node))
+        log += "\nhint: name a Lists<" + what[1].str() + "> or cellist::type<" + what[1].str() +
+               "> in the constructor of the Kernel, so that it knows the struct";
+    if (std::regex_search(log, what, key))
+        log += "\nhint: '" + what[1].str() + "' is no scalar member of an adapted struct";
+    return log;
+}
+
 cl::Program build(detail::DeviceState& device, const Source& source,
                   const detail::Definitions& definitions, cl_uint modes) {
+    if (source.text.empty()) throw Error("the source of " + source.file_name + " is empty");
     if (definitions.needs_fp64 && !device.info.fp64)
         throw Error("a struct has members of type double, which " + device.info.name +
                     " does not support");
@@ -125,7 +141,7 @@ cl::Program build(detail::DeviceState& device, const Source& source,
         if (std::regex_search(error.log(), what, check))
             throw Error("the layout of a struct differs between the host and " + device.info.name +
                         ": " + what[1].str() + " (struct_member)");
-        throw OpenClError(error.call(), error.code(), whole.in_parts(error.log()));
+        throw OpenClError(error.call(), error.code(), with_hints(whole.in_parts(error.log())));
     }
 }
 
@@ -138,12 +154,13 @@ std::size_t type_size(std::string name, const detail::Definitions& definitions) 
     static const std::map<std::string, std::size_t> scalars{
         {"char", 1}, {"uchar", 1}, {"short", 2}, {"ushort", 2}, {"half", 2},  {"int", 4},
         {"uint", 4}, {"float", 4}, {"long", 8},  {"ulong", 8},  {"double", 8}};
+    static const std::map<std::string, std::size_t> components{{"", 1},  {"2", 2}, {"3", 4},
+                                                               {"4", 4}, {"8", 8}, {"16", 16}};
     const std::size_t digits = std::min(name.find_first_of("0123456789"), name.size());
     const auto scalar = scalars.find(name.substr(0, digits));
-    if (scalar == scalars.end()) return 0;
-    if (digits == name.size()) return scalar->second;
-    const std::size_t components = std::stoul(name.substr(digits));
-    return scalar->second * (components == 3 ? 4 : components);
+    const auto count = components.find(name.substr(digits));
+    if (scalar == scalars.end() || count == components.end()) return 0;
+    return scalar->second * count->second;
 }
 
 std::string text_of(const cl::Kernel& kernel, cl_uint index, cl_kernel_arg_info what) {
@@ -155,13 +172,24 @@ std::string text_of(const cl::Kernel& kernel, cl_uint index, cl_kernel_arg_info 
     return text.substr(0, text.find('\0'));
 }
 
-/// "Hit" for "cellist_node_Hit*"; empty for other types.
-std::string record_of_nodes(const std::string& type) {
-    constexpr std::string_view mark = "cellist_node_";
-    const std::size_t at = type.find(mark);
-    if (at == std::string::npos) return {};
-    const std::string rest = type.substr(at + mark.size());
-    return rest.substr(0, rest.find_first_of(" *"));
+/// "float4" for "float4*", "Hit" for "struct Hit*".
+std::string pointed_to(std::string type) {
+    type.resize(std::min(type.size(), type.find_first_of("*")));
+    type.erase(type.find_last_not_of(' ') + 1);
+    return type.starts_with("struct ") ? type.substr(7) : type;
+}
+
+/// What must be the same in an argument and a parameter: float or integer with the size of the scalar,
+/// or the name of a struct. Vectors count as their scalars, and signs do not count. Empty for other
+/// types, which are not compared.
+std::string comparable(const std::string& type, const detail::Definitions& definitions) {
+    for (const detail::RecordType& record : definitions.records)
+        if (record.name == type) return type;
+    const std::string scalar = type.substr(0, type.find_first_of("0123456789"));
+    const std::size_t size = type_size(scalar, definitions);
+    if (size == 0) return {};
+    const bool is_float = scalar == "float" || scalar == "double" || scalar == "half";
+    return (is_float ? "float" : "integer") + std::to_string(8 * size);
 }
 
 std::vector<Parameter> parameters_of(const cl::Kernel& kernel,
@@ -172,7 +200,10 @@ std::vector<Parameter> parameters_of(const cl::Kernel& kernel,
         const auto address = kernel.getArgInfo<CL_KERNEL_ARG_ADDRESS_QUALIFIER>(i);
         Parameter& parameter = parameters[i];
         parameter.declaration = type + " " + text_of(kernel, i, CL_KERNEL_ARG_NAME);
-        parameter.record = record_of_nodes(type);
+        parameter.type = pointed_to(type);
+        constexpr std::string_view nodes = "cellist_node_";
+        parameter.is_container = parameter.type.starts_with(nodes);
+        if (parameter.is_container) parameter.type.erase(0, nodes.size());
         if (type == "sampler_t")
             parameter.kind = Arguments::Kind::sampler;
         else if (address == CL_KERNEL_ARG_ADDRESS_LOCAL)
@@ -199,35 +230,29 @@ const char* kind_name(Arguments::Kind kind) {
     return "";
 }
 
-/// A work-group for ranges that do not name one; none if no useful size divides the range.
-cl::NDRange local_range(const Range& range, std::size_t limit) {
-    if (range.local[0] != 0) {
-        switch (range.dimensions) {
-            case 1:
-                return {range.local[0]};
-            case 2:
-                return {range.local[0], range.local[1]};
-            default:
-                return {range.local[0], range.local[1], range.local[2]};
-        }
-    }
-    const std::size_t most = std::min<std::size_t>(limit, 256);
-    const std::size_t x = std::gcd(range.global[0], range.dimensions == 1 ? most : most / 8);
-    const std::size_t y = std::gcd(range.global[1], std::size_t{8});
-    if (range.dimensions == 1) return x >= 32 ? cl::NDRange(x) : cl::NullRange;
-    if (x * y < 32) return cl::NullRange;
-    return range.dimensions == 2 ? cl::NDRange(x, y) : cl::NDRange(x, y, 1);
+cl::NDRange nd_range(const std::array<std::size_t, 3>& extents, std::size_t dimensions) {
+    if (dimensions == 1) return {extents[0]};
+    if (dimensions == 2) return {extents[0], extents[1]};
+    return {extents[0], extents[1], extents[2]};
 }
 
-cl::NDRange global_range(const Range& range) {
-    switch (range.dimensions) {
-        case 1:
-            return {range.global[0]};
-        case 2:
-            return {range.global[0], range.global[1]};
-        default:
-            return {range.global[0], range.global[1], range.global[2]};
-    }
+/// The work-group of a launch: the range's own, else the one that the kernel requires, else one of up
+/// to 256 items that divides the range; the driver's choice where none of a useful size does.
+cl::NDRange work_group(const Range& range, const std::array<std::size_t, 3>& required,
+                       std::size_t limit) {
+    const auto end = range.local.begin() + static_cast<std::ptrdiff_t>(range.dimensions);
+    const auto zeros = std::count(range.local.begin(), end, 0u);
+    if (zeros == 0) return nd_range(range.local, range.dimensions);
+    if (zeros != end - range.local.begin())
+        throw Error("Range::local has an extent of 0: name all of them, or none");
+    if (required[0] != 0) return nd_range(required, range.dimensions);
+
+    constexpr std::size_t least = 32;
+    const std::size_t most = std::min<std::size_t>(limit, 256);
+    if (most < least) return cl::NullRange;
+    const std::size_t x = std::gcd(range.global[0], range.dimensions == 1 ? most : most / 8);
+    const std::size_t y = range.dimensions == 1 ? 1 : std::gcd(range.global[1], std::size_t{8});
+    return x * y < least ? cl::NullRange : nd_range({x, y, 1}, range.dimensions);
 }
 
 cl::Kernel kernel_called(const cl::Program& program, const std::string& name,
@@ -240,16 +265,20 @@ cl::Kernel kernel_called(const cl::Program& program, const std::string& name,
     }
 }
 
-std::string contents(std::string_view record) {
-    if (record.empty()) return "a buffer";
-    return std::string("lists of ").append(record);
+/// Parameters or arguments as they are written: a container is one of them and takes four.
+std::size_t written(const auto& list) {
+    const auto containers =
+        std::count_if(list.begin(), list.end(), [](const auto& item) { return item.is_container; });
+    return list.size() - 3 * static_cast<std::size_t>(containers);
 }
 
 cl_context context_of(const std::byte* memory_handle) {
     cl_mem memory = nullptr;
     std::memcpy(&memory, memory_handle, sizeof(cl_mem));
     cl_context context = nullptr;
-    clGetMemObjectInfo(memory, CL_MEM_CONTEXT, sizeof(cl_context), &context, nullptr);
+    if (memory == nullptr || clGetMemObjectInfo(memory, CL_MEM_CONTEXT, sizeof(cl_context),
+                                                &context, nullptr) != CL_SUCCESS)
+        return nullptr;
     return context;
 }
 
@@ -258,11 +287,13 @@ struct Variant {
     cl::Kernel kernel;
     std::vector<Parameter> parameters;
     std::size_t work_group_limit = 0;
+    std::array<std::size_t, 3> required_work_group{};  ///< 0 if the kernel requires none
 
     /// Throws Error if an argument does not fit the parameter. Drivers do not all check this: PoCL
     /// takes a value of any size, and none knows what a buffer holds.
-    void check(const detail::DeviceState& device, const std::string& name, cl_uint index,
-               const Arguments::Argument& argument, const std::byte* data) const {
+    void check(const detail::DeviceState& device, const detail::Definitions& definitions,
+               const std::string& name, cl_uint index, const Arguments::Argument& argument,
+               const std::byte* data) const {
         const Parameter& parameter = parameters[index];
         const auto fail = [&](const std::string& takes, const std::string& given) {
             throw Error("kernel " + name + ", parameter " + std::to_string(index) + " '" +
@@ -272,9 +303,21 @@ struct Variant {
             fail(kind_name(parameter.kind), kind_name(argument.kind));
         if (parameter.size != 0 && argument.size != parameter.size)
             fail(std::to_string(parameter.size) + " bytes", std::to_string(argument.size));
-        if (argument.record != parameter.record)
-            fail(contents(parameter.record), contents(argument.record));
-        if (argument.kind == Arguments::Kind::memory && context_of(data) != device.context())
+        if (argument.is_container != parameter.is_container ||
+            (argument.is_container && argument.type != parameter.type))
+            fail(parameter.is_container ? "lists of " + parameter.type : "a buffer",
+                 argument.is_container ? "lists of " + argument.type : "a buffer");
+        const std::string given = comparable(argument.type, definitions);
+        const std::string taken = comparable(parameter.type, definitions);
+        if (!given.empty() && !taken.empty() && given != taken)
+            fail(parameter.type,
+                 argument.type + (argument.kind == Arguments::Kind::memory
+                                      ? " (pass Buffer::cl() to reinterpret its elements)"
+                                      : ""));
+        if (argument.kind != Arguments::Kind::memory) return;
+        const cl_context context = context_of(data);
+        if (context == nullptr) fail("memory", "an empty buffer");
+        if (context != device.context())
             fail("memory of " + device.info.name, "memory of another context");
     }
 };
@@ -298,6 +341,8 @@ struct Kernel::Impl {
             made.parameters = parameters_of(made.kernel, definitions);
             made.work_group_limit =
                 made.kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device->device);
+            made.required_work_group =
+                made.kernel.getWorkGroupInfo<CL_KERNEL_COMPILE_WORK_GROUP_SIZE>(device->device);
             return variants.emplace(modes, std::move(made)).first->second;
         });
     }
@@ -320,12 +365,13 @@ cl::Event Kernel::enqueue(const Range& range, const Arguments& arguments) {
         impl_->variant(arguments.modes() != 0 ? arguments.modes() : impl_->definitions.modes);
     const auto list = arguments.list();
     if (list.size() != variant.parameters.size())
-        throw Error("kernel " + impl_->name + " has " + std::to_string(variant.parameters.size()) +
-                    " parameters and was given " + std::to_string(list.size()) +
-                    " (a container counts as 4)");
+        throw Error("kernel " + impl_->name + " takes " +
+                    std::to_string(written(variant.parameters)) + " arguments and was given " +
+                    std::to_string(written(list)) +
+                    " (a container counts as one; build(kernel, ...) passes it first)");
     for (cl_uint i = 0; i < list.size(); ++i) {
         const std::byte* data = arguments.data(list[i]);
-        variant.check(*impl_->device, impl_->name, i, list[i], data);
+        variant.check(*impl_->device, impl_->definitions, impl_->name, i, list[i], data);
         opencl([&] { variant.kernel.setArg(i, list[i].size, data); });
     }
 
@@ -336,9 +382,10 @@ cl::Event Kernel::enqueue(const Range& range, const Arguments& arguments) {
         if (std::find(extents.begin(), extents.end(), 0u) != extents.end())
             queue.enqueueMarkerWithWaitList(nullptr, &event);
         else
-            queue.enqueueNDRangeKernel(variant.kernel, cl::NullRange, global_range(range),
-                                       local_range(range, variant.work_group_limit), nullptr,
-                                       &event);
+            queue.enqueueNDRangeKernel(
+                variant.kernel, cl::NullRange, nd_range(range.global, range.dimensions),
+                work_group(range, variant.required_work_group, variant.work_group_limit), nullptr,
+                &event);
     });
     return event;
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 
 #include <cellist/detail/lists_core.hpp>
 
@@ -30,34 +31,46 @@ ListsCore::~ListsCore() = default;
 
 std::vector<BuildReport> ListsCore::build(std::span<ListsCore* const> containers,
                                           const std::function<void()>& insert) {
+    for (std::size_t i = 0; i < containers.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if (containers[i] == containers[j])
+                throw Error("a build names the same container twice");
     std::vector<BuildReport> reports(containers.size());
     try {
         for (ListsCore* container : containers) container->storage_->start();
         for (std::uint32_t pass = 1;; ++pass) {
             for (ListsCore* container : containers) container->storage_->begin_pass();
             insert();
-            bool complete = true;
+            std::optional<std::size_t> incomplete;
             for (std::size_t i = 0; i < containers.size(); ++i)
-                complete = containers[i]->storage_->end_pass(reports[i]) && complete;
-            if (complete) return reports;
+                if (!containers[i]->storage_->end_pass(reports[i])) incomplete = i;
+            if (!incomplete) return reports;
             if (pass == passes_max)
                 throw OverflowError("the kernel inserted more records in each of " +
                                         std::to_string(passes_max) +
                                         " passes: it must insert the same records every time",
-                                    reports.front());
+                                    reports[*incomplete]);
         }
+    } catch (const OpenClError& error) {
+        // A driver may find out only now that it has no memory for a pool it had granted.
+        const bool out_of_memory = error.code() == CL_MEM_OBJECT_ALLOCATION_FAILURE ||
+                                   error.code() == CL_OUT_OF_RESOURCES ||
+                                   error.code() == CL_OUT_OF_HOST_MEMORY;
+        for (ListsCore* container : containers) container->empty_after_failure(out_of_memory);
+        throw;
     } catch (...) {
-        for (ListsCore* container : containers) container->empty_after_failure();
+        for (ListsCore* container : containers) container->empty_after_failure(false);
         throw;
     }
 }
 
-/// Leaves the lists empty, whatever failed before.
-void ListsCore::empty_after_failure() noexcept {
+/// Leaves the lists empty, whatever failed before. `without_pool` gives the nodes' memory back; the
+/// next build grows anew.
+void ListsCore::empty_after_failure(bool without_pool) noexcept {
     try {
-        storage_->recover();
+        storage_->recover(without_pool);
         storage_->clear();
-    } catch (const Error&) {
+    } catch (...) {
         // The device is lost; the error that is under way says why.
     }
 }
@@ -69,21 +82,14 @@ std::uint64_t ListsCore::pool_bytes() const { return storage_->bytes(); }
 unsigned ListsCore::mode() const { return storage_->mode(); }
 void ListsCore::add_to(Arguments& arguments) const { storage_->add_to(arguments); }
 
-/// A kernel of the library for this record. `key` is the sort key that it is compiled for.
+/// A kernel of the library for this record. `key_function` defines cellist_sort_key, for sorting.
 Kernel& ListsCore::kernel(const std::string& name, std::string_view source,
-                          const std::string& key) const {
-    const std::string id = name + "\n" + key;
+                          const std::string& key_function) const {
+    const std::string id = name + "\n" + key_function;
     if (const auto known = kernels_.find(id); known != kernels_.end()) return known->second;
-    const std::string record = definitions_.records.back().name;
-    std::string text = "#define CELLIST_RECORD " + record + "\n";
-    if (!key.empty())
-        text +=
-            "static inline ulong cellist_sort_key(CELLIST_RECORD record)\n{\n    return "
-            "cellist_order(\n#line 1 \"sort expression\"\n" +
-            key + "\n);\n}\n";
-    text += "#line 1 \"" + name + ".cl\"\n" + std::string(source);
-    return kernels_
-        .emplace(id, Kernel(device_, Source{.text = std::move(text)}, name, definitions_))
+    const std::string text = "#define CELLIST_RECORD " + definitions_.records.back().name + "\n" +
+                             key_function + "#line 1 \"" + name + ".cl\"\n" + std::string(source);
+    return kernels_.emplace(id, Kernel(device_, Source{.text = text}, name, definitions_))
         .first->second;
 }
 
@@ -93,10 +99,14 @@ void Arguments::add_lists(const ListsCore& lists) { lists.add_to(*this); }
 
 unsigned read_mode(const ListsCore& lists) { return lists.mode(); }
 
-cl::Event ListsCore::sort(const std::string& key) {
+cl::Event ListsCore::sort(const std::string& key, Order order) {
+    const std::string key_function =
+        std::string("static inline ulong cellist_sort_key(CELLIST_RECORD record) {\n    return ") +
+        (order == Order::descending ? "~" : "") + "cellist_order(\n#line 1 \"sort expression\"\n" +
+        key + "\n);\n}\n";
     Arguments arguments;
     add_to(arguments);
-    return kernel("cellist_sort", kernels::sort_cl, key).enqueue(cell_range(), arguments);
+    return kernel("cellist_sort", kernels::sort_cl, key_function).enqueue(cell_range(), arguments);
 }
 
 /// The length of every list, in words of a device buffer that start at `at`.
@@ -114,9 +124,7 @@ Lengths ListsCore::lengths() const {
     std::vector<cl_uint> values(shape_.cells());
     device_lengths(0).read(values.data(), values.size() * sizeof(cl_uint));
     Lengths result;
-    result.histogram.resize(1);
     for (const cl_uint length : values) {
-        if (length >= result.histogram.size()) result.histogram.resize(std::size_t{length} + 1);
         ++result.histogram[length];
         result.total += length;
         result.nonempty_cells += length > 0 ? 1 : 0;

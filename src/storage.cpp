@@ -83,12 +83,12 @@ std::optional<std::string> ListStorage::refusal(std::uint64_t capacity_nodes) co
         return "capacity of " + std::to_string(capacity_nodes) + " nodes of " +
                std::to_string(node_bytes_) + " bytes exceeds this device's limit of " +
                std::to_string(limit) + " nodes (" + mebibytes(allocation) +
-               " per allocation): lower capacity_nodes or build in slices";
+               " per allocation): use fewer cells or records, or a smaller record";
     if (bytes_with(capacity_nodes) > options_.budget_bytes)
         return "a pool of " + std::to_string(capacity_nodes) + " nodes and " +
                std::to_string(shape_.cells()) + " cells takes " +
                mebibytes(bytes_with(capacity_nodes)) + ", over the budget of " +
-               mebibytes(options_.budget_bytes) + ": raise budget_bytes or build in slices";
+               mebibytes(options_.budget_bytes) + ": raise budget_bytes";
     return {};
 }
 
@@ -139,14 +139,27 @@ void ListStorage::update(BuildReport& report, const Counters& counters,
     ++report.passes;
 }
 
+cellist_findings ListStorage::findings(Kernel& kernel, const Arguments& arguments) {
+    cellist_findings findings{0, 0, 0, 0, CELLIST_NONE};
+    Memory memory(device_, 1, sizeof findings, "findings");
+    memory.write(&findings, sizeof findings);
+    Arguments all = arguments;
+    all.add(memory.cl());
+    kernel.enqueue(Range::padded(shape_.cells()), all);
+    memory.read(&findings, sizeof findings);
+    return findings;
+}
+
 std::unique_ptr<ListStorage> make_storage(std::shared_ptr<DeviceState> device,
                                           const Definitions& definitions, const Shape& shape,
                                           const ListsOptions& options) {
-    if (options.storage != Storage::fixed && !options.capacity_nodes &&
-        options.overflow != Overflow::grow)
-        throw Error("Overflow::stop and Overflow::drop need capacity_nodes");
-    if (options.storage == Storage::fixed && !options.slots && options.overflow != Overflow::grow)
-        throw Error("Overflow::stop and Overflow::drop need slots in Storage::fixed");
+    const bool fixed = options.storage == Storage::fixed;
+    if (fixed && options.capacity_nodes)
+        throw Error("capacity_nodes has no meaning in Storage::fixed: set slots");
+    if (!fixed && options.slots) throw Error("slots has a meaning in Storage::fixed only");
+    if (options.overflow != Overflow::grow && !options.capacity_nodes && !options.slots)
+        throw Error(std::string("Overflow::stop and Overflow::drop need ") +
+                    (fixed ? "slots in Storage::fixed" : "capacity_nodes"));
     switch (options.storage) {
         case Storage::linked:
             return std::make_unique<LinkedStorage>(std::move(device), definitions, shape, options);

@@ -38,10 +38,11 @@ public:
     /// the lists are complete. Throws OverflowError; the caller empties the lists then. Blocks.
     virtual bool end_pass(BuildReport& report) = 0;
 
-    /// Frees and makes what a failed build may have left undone, without nodes.
-    virtual void recover() = 0;
+    /// Makes what a failed build may have left undone. The pool is empty afterwards if there was none,
+    /// or if `without_pool` says so.
+    virtual void recover(bool without_pool) = 0;
 
-    /// Links and counts that do not belong together. `kernel` finds them on the device.
+    /// Links, offsets and counts that do not belong together. Blocks.
     [[nodiscard]] virtual Validation validate() = 0;
 
     /// Adds what CELLIST_LISTS declares.
@@ -77,6 +78,8 @@ protected:
     void update(BuildReport& report, const Counters& counters, std::uint64_t stored) const;
     /// Throws OverflowError if the policy or a limit forbids a pool of `demand` nodes.
     void require(std::uint64_t demand, const BuildReport& report) const;
+    /// Runs a validating kernel over all cells: (container, arguments..., findings). Blocks.
+    [[nodiscard]] cellist_findings findings(Kernel& kernel, const Arguments& arguments);
     /// A kernel of the library for this record.
     [[nodiscard]] Kernel kernel(const std::string& name, std::string_view source) const;
 
@@ -93,6 +96,12 @@ protected:
     Memory nodes_;
     Memory shards_;
 };
+
+/// The lowest bad cell, if there is one.
+[[nodiscard]] inline std::optional<std::uint64_t> bad_cell(const cellist_findings& findings) {
+    if (findings.first_bad_cell == CELLIST_NONE) return {};
+    return findings.first_bad_cell;
+}
 
 /// The storage that the options name, with empty lists. Throws Error if a size exceeds a limit.
 [[nodiscard]] std::unique_ptr<ListStorage> make_storage(std::shared_ptr<DeviceState> device,

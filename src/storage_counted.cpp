@@ -5,17 +5,6 @@
 
 namespace cellist::detail {
 
-namespace {
-
-/// As cellist_piece_findings in pieces.cl.
-struct PieceFindings {
-    cl_uint broken_places;
-    cl_uint unfilled_cells;
-    cl_uint first_bad_cell;
-};
-
-}  // namespace
-
 CountedStorage::CountedStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
                                const Shape& shape, const ListsOptions& options)
     : ListStorage(std::move(device), definitions, shape, options, CELLIST_CONTIGUOUS,
@@ -31,6 +20,7 @@ void CountedStorage::clear() {
     constexpr cl_uint zero = 0;
     heads_.fill(&zero, sizeof zero, heads_.size_bytes());
     clear_counters();
+    kept_ = 0;
 }
 
 void CountedStorage::clear_counts() {
@@ -74,6 +64,10 @@ void CountedStorage::place_lists(BuildReport& report) {
     update(report, counters_, kept_);
     report.dropped = demand_ - kept_;
     report.attempted = demand_ + counters_.rejected;
+    if (counters_.dropped > 0)
+        throw OverflowError("a list of more than " + std::to_string(CELLIST_CELL_COUNT_MAX) +
+                                " records is over the limit of Storage::counted",
+                            report);
     if (kept_ < demand_ && options_.overflow != Overflow::drop) {
         require(demand_, report);
         allocate_pool(demand_);
@@ -83,31 +77,32 @@ void CountedStorage::place_lists(BuildReport& report) {
 }
 
 void CountedStorage::check_repeats(const Counters& filled) {
-    if (validate().ok() && filled.dropped == demand_ - kept_ &&
-        filled.rejected == counters_.rejected)
+    const std::uint64_t unfilled = validate().lost_nodes;
+    if (unfilled == 0 && filled.dropped == demand_ - kept_ && filled.rejected == counters_.rejected)
         return;
-    throw Error(
-        "the kernel inserted other records when it filled the lists than when it counted them: it "
-        "must insert the same records every time, or use Storage::linked");
+    throw Error("the kernel inserted " +
+                std::to_string(kept_ - unfilled + filled.dropped + filled.rejected) +
+                " records when it filled the lists, and " +
+                std::to_string(demand_ + counters_.rejected) +
+                " or others when it counted them: it must insert the same number into every cell "
+                "both times, or use Storage::linked");
 }
 
 Validation CountedStorage::validate() {
-    PieceFindings findings{0, 0, CELLIST_NONE};
-    Memory device_findings(device_, 1, sizeof findings, "findings");
-    device_findings.write(&findings, sizeof findings);
-    if (!pieces_) pieces_.emplace(kernel("cellist_pieces", kernels::pieces_cl));
+    if (!validate_)
+        validate_.emplace(kernel("cellist_validate_contiguous", kernels::validate_contiguous_cl));
     Arguments arguments;
     add_to(arguments);
-    arguments.add(device_findings.cl());
-    pieces_->enqueue(Range::padded(shape_.cells()), arguments);
-    device_findings.read(&findings, sizeof findings);
-    return {findings.broken_places, 0, findings.unfilled_cells, findings.first_bad_cell};
+    const cellist_findings found = findings(*validate_, arguments);
+    // Lists of sound length that do not add up to the build's records have a wrong end.
+    const std::uint64_t missing = kept_ > found.nodes ? kept_ - found.nodes : found.nodes - kept_;
+    return {found.broken, 0, found.unfilled + (found.broken == 0 ? missing : 0), bad_cell(found)};
 }
 
-void CountedStorage::recover() {
+void CountedStorage::recover(bool without_pool) {
     counted_ = false;
     mode_ = CELLIST_CONTIGUOUS;
-    if (!has_pool()) allocate_pool(0);
+    if (without_pool || !has_pool()) allocate_pool(0);
 }
 
 }  // namespace cellist::detail

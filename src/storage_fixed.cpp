@@ -32,11 +32,13 @@ void FixedStorage::clear() {
     constexpr cl_uint zero = 0;
     heads_.fill(&zero, sizeof zero, heads_.size_bytes());
     clear_counters();
+    stored_ = 0;
 }
 
 bool FixedStorage::end_pass(BuildReport& report) {
     const Counters counters = read_counters();
     const CellScan::Sums sums = scan_.sums(heads_.cl(), slots_);
+    stored_ = sums.total;
     update(report, counters, sums.total);
     if (counters.dropped == 0 || options_.overflow == Overflow::drop) return true;
 
@@ -45,21 +47,28 @@ bool FixedStorage::end_pass(BuildReport& report) {
             std::to_string(slots_) + " slots for each cell are too few for a list of " +
                 std::to_string(sums.longest) + " records: raise slots or use Overflow::grow",
             report);
-    require(nodes_with(sums.longest), report);
+    if (const auto reason = refusal(nodes_with(sums.longest)))
+        throw OverflowError("the longest list has " + std::to_string(sums.longest) +
+                                " records, and so many slots for each of " +
+                                std::to_string(shape_.cells()) +
+                                " cells are too many (use Storage::linked or counted): " + *reason,
+                            report);
     set_slots(sums.longest);
     return false;
 }
 
-void FixedStorage::recover() {
-    if (!has_pool()) set_slots(0);
+void FixedStorage::recover(bool without_pool) {
+    if (without_pool || !has_pool()) set_slots(0);
 }
 
 Validation FixedStorage::validate() {
-    // The counts say what every list holds; what they say was dropped was counted when it was.
-    const std::uint64_t demand = scan_.sums(heads_.cl(), CELLIST_NONE).total;
+    // The counts are all that says which slots are in use: they must add up to what was stored and
+    // to what was dropped.
     const std::uint64_t stored = scan_.sums(heads_.cl(), slots_).total;
-    const std::uint64_t dropped = read_counters().dropped;
-    return {0, 0, demand - stored == dropped ? 0 : std::max(demand - stored, dropped), 0};
+    const std::uint64_t demand = scan_.sums(heads_.cl(), CELLIST_NONE).total;
+    const std::uint64_t lost = stored > stored_ ? stored - stored_ : stored_ - stored;
+    const bool demand_is_right = demand - stored == read_counters().dropped;
+    return {demand_is_right ? std::uint64_t{0} : std::uint64_t{1}, 0, lost, {}};
 }
 
 }  // namespace cellist::detail

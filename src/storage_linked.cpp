@@ -9,14 +9,6 @@ namespace {
 
 constexpr std::uint64_t default_capacity_nodes = 65536;
 
-/// As cellist_findings in validate.cl.
-struct Findings {
-    cl_uint broken_links;
-    cl_uint repeated_nodes;
-    cl_uint reached_nodes;
-    cl_uint first_bad_cell;
-};
-
 }  // namespace
 
 LinkedStorage::LinkedStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
@@ -48,28 +40,21 @@ bool LinkedStorage::end_pass(BuildReport& report) {
     return false;
 }
 
-void LinkedStorage::recover() {
-    if (!has_pool()) allocate_pool(0);
+void LinkedStorage::recover(bool without_pool) {
+    if (without_pool || !has_pool()) allocate_pool(0);
 }
 
 Validation LinkedStorage::validate() {
     constexpr cl_uint zero = 0;
     Memory reached(device_, (capacity_nodes_ + 31) / 32, sizeof(cl_uint), "validation buffer");
     reached.fill(&zero, sizeof zero, reached.size_bytes());
-    Findings findings{0, 0, 0, CELLIST_NONE};
-    Memory device_findings(device_, 1, sizeof findings, "findings");
-    device_findings.write(&findings, sizeof findings);
-
-    if (!validate_) validate_.emplace(kernel("cellist_validate", kernels::validate_cl));
+    if (!validate_)
+        validate_.emplace(kernel("cellist_validate_linked", kernels::validate_linked_cl));
     Arguments arguments;
     add_to(arguments);
     arguments.add(reached.cl());
-    arguments.add(device_findings.cl());
-    validate_->enqueue(Range::padded(shape_.cells()), arguments);
-    device_findings.read(&findings, sizeof findings);
-
-    return {findings.broken_links, findings.repeated_nodes,
-            read_counters().allocated - findings.reached_nodes, findings.first_bad_cell};
+    const cellist_findings found = findings(*validate_, arguments);
+    return {found.broken, found.repeated, read_counters().allocated - found.nodes, bad_cell(found)};
 }
 
 }  // namespace cellist::detail

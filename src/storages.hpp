@@ -15,7 +15,7 @@ public:
     void clear() override;
     void begin_pass() override { clear(); }
     bool end_pass(BuildReport& report) override;
-    void recover() override;
+    void recover(bool without_pool) override;
     Validation validate() override;
 
 private:
@@ -31,7 +31,7 @@ public:
     void start() override { counted_ = false; }
     void begin_pass() override;
     bool end_pass(BuildReport& report) override;
-    void recover() override;
+    void recover(bool without_pool) override;
     Validation validate() override;
 
 private:
@@ -45,7 +45,7 @@ private:
     Counters counters_;         ///< of the counting pass
     std::uint64_t demand_ = 0;  ///< records that the counting pass saw inside the shape
     std::uint64_t kept_ = 0;    ///< those of them that fit
-    std::optional<Kernel> pieces_;
+    std::optional<Kernel> validate_;
 };
 
 /// A number of slots for each cell; one pass.
@@ -56,7 +56,7 @@ public:
     void clear() override;
     void begin_pass() override { clear(); }
     bool end_pass(BuildReport& report) override;
-    void recover() override;
+    void recover(bool without_pool) override;
     Validation validate() override;
 
 private:
@@ -64,6 +64,7 @@ private:
     [[nodiscard]] std::uint64_t nodes_with(std::uint64_t slots) const;
 
     CellScan scan_;
+    std::uint64_t stored_ = 0;  ///< records that the last build left in the lists
 };
 
 }  // namespace cellist::detail

@@ -26,7 +26,7 @@ kernel void insert_many(CELLIST_LISTS(Item, lists), uint outside, global uint* i
 {
     const uint i = get_global_id(0);
     Item item = { 0.0f, i };
-    if (cellist_insert(lists, i % cellist_cells(lists), item) != CELLIST_NONE)
+    if (cellist_insert(lists, i % cellist_cells(lists), item))
         atomic_inc(inserted);
     for (uint k = 0; k < outside; ++k)
         cellist_insert(lists, cellist_cells(lists) + k, item);

@@ -71,5 +71,28 @@ TEST_CASE("an impossible work-group is an error and leaves the kernel usable") {
     device().finish();
 }
 
+TEST_CASE("a range that cannot be is refused, naming it") {
+    Kernel kernel(device(), "kernel void f(global uint* out) { *out = 1; }", "f");
+    const Buffer<cl_uint> out(device(), 1);
+    REQUIRE(contains(error_of([&] { kernel.run(-1, out); }).what(), "-1"));
+    REQUIRE(contains(error_of([&] { kernel.run({4, -7}, out); }).what(), "-7"));
+    REQUIRE_THROWS_AS(Range::padded(-5), Error);
+    REQUIRE_THROWS_AS(Range::padded(5, 0), Error);
+    REQUIRE_THROWS_AS(Range::padded(~std::uint64_t{0}), Error);
+    Range partly(8, 8);
+    partly.local = {8, 0, 0};
+    REQUIRE_THROWS_AS(kernel.run(partly, out), Error);
+}
+
+TEST_CASE("a kernel that requires a work-group size gets it") {
+    Kernel kernel(device(),
+                  "kernel __attribute__((reqd_work_group_size(16, 1, 1))) void f(global uint* out)"
+                  "{ out[get_global_id(0)] = get_local_size(0); }",
+                  "f");
+    const Buffer<cl_uint> out(device(), 64);
+    kernel.run(64, out);
+    for (const cl_uint size : out.download()) REQUIRE(size == 16);
+}
+
 }  // namespace
 }  // namespace cellist::test

@@ -14,7 +14,7 @@ namespace cellist {
 
 /// The OpenCL C source of a program.
 struct Source {
-    std::string text;
+    std::string text = {};
     /// Stands before the line numbers in the compiler's messages.
     std::string file_name = "kernel";
     /// Added to the build options, which start with "-cl-std=CL1.2 -cl-kernel-arg-info".
@@ -44,9 +44,11 @@ public:
     Kernel& operator=(const Kernel&) = delete;
     ~Kernel();
 
-    /// Enqueues the kernel over a range. Does not block. Arguments in the kernel's order: scalars,
+    /// Enqueues the kernel over a range. Does not block. Kernels that insert run inside of build():
+    /// elsewhere, what they insert is not reported, and dropped where no node is free. Arguments in the kernel's order: scalars,
     /// adapted structs, Buffer, Lists, cl::Buffer, cl::Image, cl::Sampler, LocalMemory. Throws Error
-    /// if their number or the size of one does not fit the kernel's parameters.
+    /// if their number, or the kind, size or type of one does not fit the kernel's parameters; signs
+    /// and the widths of vectors are not compared.
     template <class... Args>
     cl::Event run(const Range& range, const Args&... args) {
         detail::Arguments arguments;

@@ -69,19 +69,22 @@ public:
     /// Empties the lists; the pool keeps its capacity. Does not block.
     void clear() { core_.clear(); }
 
-    /// Sorts every list by a scalar member, ascending: cellist_for_each then visits the least first.
-    /// Records with equal keys are ordered by their remaining members, in order of declaration, so
+    /// Sorts every list by a scalar member: cellist_for_each then visits the least first, or the
+    /// greatest. Records with equal keys are ordered by their remaining members, ascending, in order
+    /// of declaration, so
     /// the result depends on the records alone and not on the order of insertion. Floats are ordered
-    /// -inf < ... < -0 < +0 < ... < +inf < NaN. Lists have any length. Only links are changed. The
+    /// -inf < ... < -0 < +0 < ... < +inf < NaN. Lists have any length. The
     /// first call for a member compiles a kernel; does not block otherwise.
     template <class M>
-    cl::Event sort(M T::*member) {
-        return core_.sort("record." + detail::member_name(member));
+    cl::Event sort(M T::*member, Order order = Order::ascending) {
+        return core_.sort("record." + detail::member_name(member), order);
     }
 
     /// The same by an OpenCL C expression of `record`, of integer or float type, such as
     /// "record.x * record.x + record.y * record.y". Throws OpenClError where it does not compile.
-    cl::Event sort_by(const std::string& expression) { return core_.sort(expression); }
+    cl::Event sort_by(const std::string& expression, Order order = Order::ascending) {
+        return core_.sort(expression, order);
+    }
 
     /// How long the lists are. Blocks.
     [[nodiscard]] Lengths lengths() const { return core_.lengths(); }

@@ -13,6 +13,9 @@ enum class Overflow {
     drop,  ///< keep what fits; the report counts what was dropped, and every list is valid
 };
 
+/// Which key comes first in a sorted list.
+enum class Order { ascending, descending };
+
 /// How the nodes are arranged. Kernels do not change.
 enum class Storage {
     /// One pass: a node from the pool, linked to its cell. Reading follows links.

@@ -28,8 +28,14 @@ struct Range {
 
     /// At least `items` work-items, in whole work-groups of `group`. The kernel returns early in
     /// those behind the last item: `if (get_global_id(0) >= count) return;`.
-    [[nodiscard]] static Range padded(std::size_t items, std::size_t group = 256) {
-        Range range((items + group - 1) / group * group);
+    /// Throws Error if an argument is negative, `group` is 0, or the sum exceeds 64 bits.
+    [[nodiscard]] static Range padded(std::integral auto items, std::size_t group = 256) {
+        Range range(items);
+        std::size_t& count = range.global[0];
+        if (group == 0 || count > ~std::size_t{0} - group)
+            throw Error("no whole work-groups of " + std::to_string(group) + " hold " +
+                        std::to_string(count) + " work-items");
+        count = (count + group - 1) / group * group;
         range.local = {group, 1, 1};
         return range;
     }

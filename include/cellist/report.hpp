@@ -1,8 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <string>
-#include <vector>
 
 namespace cellist {
 
@@ -13,25 +14,28 @@ struct BuildReport {
     std::uint64_t dropped = 0;         ///< records that found no free node
     std::uint64_t rejected = 0;        ///< records for cells outside of the shape
     std::uint64_t capacity_nodes = 0;  ///< nodes in the pool after the build
-    std::uint32_t passes = 0;          ///< times the kernels ran: 1, or more after growing
+    std::uint32_t passes = 0;          ///< times the kernels ran: 1, or 2 in Storage::counted, and
+                                       ///< more after growing
 };
 
 /// How long the lists are.
 struct Lengths {
-    std::vector<std::uint64_t> histogram;  ///< cells by length: index 0 to `longest`
-    std::uint64_t longest = 0;             ///< nodes in the longest list
-    std::uint64_t nonempty_cells = 0;      ///< cells with at least one node
-    std::uint64_t total = 0;               ///< nodes in all lists
+    /// Cells by the length of their list; no entry where no list has a length.
+    std::map<std::uint64_t, std::uint64_t> histogram;
+    std::uint64_t longest = 0;         ///< nodes in the longest list
+    std::uint64_t nonempty_cells = 0;  ///< cells with at least one node
+    std::uint64_t total = 0;           ///< nodes in all lists
 };
 
 /// What Lists::validate() found. All counts are 0 in a sound container.
 struct Validation {
-    std::uint64_t broken_links = 0;    ///< links to a node that was never allocated
+    std::uint64_t broken_links = 0;    ///< links, offsets or counts that lead outside of the lists
     std::uint64_t repeated_nodes = 0;  ///< links to a node that is in a list already: cycles, too
-    std::uint64_t lost_nodes = 0;      ///< allocated nodes that no head leads to
-    std::uint64_t first_bad_cell = 0;  ///< lowest cell with a broken or repeated link, if any
+    std::uint64_t lost_nodes = 0;      ///< nodes that no list leads to, or that were never written
+    /// Lowest cell that shows one of these. None where all is well, or where only sums differ.
+    std::optional<std::uint64_t> first_bad_cell;
 
-    /// True if every allocated node is reached from exactly one head, exactly once.
+    /// True if every stored node is in exactly one list, exactly once.
     [[nodiscard]] bool ok() const {
         return broken_links == 0 && repeated_nodes == 0 && lost_nodes == 0;
     }

@@ -64,4 +64,13 @@ typedef struct cellist_shard {
     CELLIST_UINT padding[10];
 } cellist_shard;
 
+// What a validation finds; each of its kernels says which of these it counts.
+typedef struct cellist_findings {
+    CELLIST_UINT broken;
+    CELLIST_UINT repeated;
+    CELLIST_UINT unfilled;
+    CELLIST_UINT nodes;
+    CELLIST_UINT first_bad_cell;
+} cellist_findings;
+
 #endif

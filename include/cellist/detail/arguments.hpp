@@ -1,9 +1,10 @@
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <cstring>
 #include <span>
-#include <string_view>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -31,26 +32,32 @@ public:
     enum class Kind { value, memory, sampler, local };
     struct Argument {
         Kind kind;
-        std::size_t offset;       ///< into the bytes; unused for local memory
-        std::size_t size;         ///< in bytes
-        std::string_view record;  ///< what a container's nodes hold; else empty
+        std::size_t offset;  ///< into the bytes; unused for local memory
+        std::size_t size;    ///< in bytes
+        std::string type;   ///< in OpenCL C: of a value, of a buffer's elements; empty if not known
+        bool is_container;  ///< the nodes of a container, which hold records of this type
     };
 
     template <class T>
-        requires(std::is_arithmetic_v<T> || std::is_enum_v<T> || requires { DeviceType<T>::size; })
     void add(const T& value) {
         static_assert(!std::is_same_v<T, bool>, "OpenCL C has no bool parameters: pass a cl_uint");
+        static_assert(KnownOnDevice<T> || std::is_same_v<T, bool>,
+                      "kernels take scalars, adapted structs, cellist::Buffer, cellist::Lists, "
+                      "cl::Buffer, cl::Image, cl::Sampler and cellist::LocalMemory");
         append(Kind::value, &value, sizeof value);
+        arguments_.back().type = DeviceType<T>::name();
     }
     template <class T>
     void add(const Buffer<T>& buffer) {
         add(buffer.cl());
+        if constexpr (KnownOnDevice<T>) arguments_.back().type = DeviceType<T>::name();
     }
     template <class T>
     void add(const Lists<T>& lists) {
         add_lists(lists.core());
     }
-    void add(const cl::Memory& memory) {
+    template <std::derived_from<cl::Memory> M>
+    void add(const M& memory) {
         const cl_mem handle = memory();
         append(Kind::memory, &handle, sizeof handle);
     }
@@ -59,19 +66,20 @@ public:
         append(Kind::sampler, &handle, sizeof handle);
     }
     void add(const LocalMemory& local) {
-        arguments_.push_back({Kind::local, 0, local.size_bytes, {}});
+        arguments_.push_back({Kind::local, 0, local.size_bytes, {}, false});
     }
     void append(Kind kind, const void* data, std::size_t size) {
         const std::size_t offset = bytes_.size();
         bytes_.resize(offset + size);
         std::memcpy(bytes_.data() + offset, data, size);
-        arguments_.push_back({kind, offset, size, {}});
+        arguments_.push_back({kind, offset, size, {}, false});
     }
 
-    /// The nodes of a container. `record` must live as long as the arguments.
-    void add_nodes(const cl::Memory& nodes, std::string_view record) {
+    /// The nodes of a container of records of this type.
+    void add_nodes(const cl::Buffer& nodes, const std::string& record) {
         add(nodes);
-        arguments_.back().record = record;
+        arguments_.back().type = record;
+        arguments_.back().is_container = true;
     }
     /// Tells that a container among the arguments has this mode.
     void add_mode(cl_uint mode) { modes_ |= mode; }

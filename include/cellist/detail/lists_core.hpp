@@ -33,7 +33,7 @@ public:
     static std::vector<BuildReport> build(std::span<ListsCore* const> containers,
                                           const std::function<void()>& insert);
     void clear();
-    cl::Event sort(const std::string& key);
+    cl::Event sort(const std::string& key, Order order);
     [[nodiscard]] Lengths lengths() const;
     [[nodiscard]] Validation validate() const;
 
@@ -58,9 +58,9 @@ public:
     void add_to(Arguments& arguments) const;
 
 private:
-    void empty_after_failure() noexcept;
+    void empty_after_failure(bool without_pool) noexcept;
     Kernel& kernel(const std::string& name, std::string_view source,
-                   const std::string& key = {}) const;
+                   const std::string& key_function = {}) const;
     [[nodiscard]] Range cell_range() const;
     struct Offsets {
         Memory words;

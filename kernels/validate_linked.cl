@@ -1,20 +1,14 @@
 // Checks the links of every list: each allocated node is reached from exactly one head, exactly once.
 //
 //   reached   (capacity_nodes + 31) / 32   in: 0; a bit a node: some link leads to it
-//   findings  1                            in: 0 and first_bad_cell = CELLIST_NONE; out: the counts
+//   findings  1                            in: 0 and first_bad_cell = CELLIST_NONE; out: links to nodes
+//                                          never allocated, links to nodes reached before, nodes
+//                                          reached
 //
 // One work-item a cell; the range is padded to whole work-groups. A walk ends at the first node that
 // another link reached, so all walks together take at most nodes + cells steps, whatever the links
 // hold, and no address outside of the pool is read.
 #include <cellist/lists.clh>
-
-// As struct Findings in lists_core.cpp.
-typedef struct cellist_findings {
-    uint broken_links;
-    uint repeated_nodes;
-    uint reached_nodes;
-    uint first_bad_cell;
-} cellist_findings;
 
 static inline int cellist_is_allocated(volatile global cellist_shard* shards,
                                        const cellist_view view, uint node) {
@@ -26,8 +20,9 @@ static inline int cellist_is_allocated(volatile global cellist_shard* shards,
     return n < shards[shard].allocated;
 }
 
-kernel void cellist_validate(CELLIST_LISTS(CELLIST_RECORD, lists), volatile global uint* reached,
-                             volatile global cellist_findings* findings) {
+kernel void cellist_validate_linked(CELLIST_LISTS(CELLIST_RECORD, lists),
+                                    volatile global uint* reached,
+                                    volatile global cellist_findings* findings) {
     const uint cell = get_global_id(0);
     if (cell >= cellist_cells(lists)) return;
     uint length = 0;
@@ -35,19 +30,19 @@ kernel void cellist_validate(CELLIST_LISTS(CELLIST_RECORD, lists), volatile glob
     uint node = lists_heads[cell];
     for (uint step = 0; step <= lists_view.capacity_nodes && node != CELLIST_NONE; ++step) {
         if (!cellist_is_allocated(lists_shards, lists_view, node)) {
-            atomic_inc(&findings->broken_links);
+            atomic_inc(&findings->broken);
             bad = 1;
             break;
         }
         const uint bit = 1u << (node & 31u);
         if (atomic_or(&reached[node >> 5], bit) & bit) {
-            atomic_inc(&findings->repeated_nodes);
+            atomic_inc(&findings->repeated);
             bad = 1;
             break;
         }
         ++length;
         node = lists_nodes[node].next;
     }
-    if (length) atomic_add(&findings->reached_nodes, length);
+    if (length) atomic_add(&findings->nodes, length);
     if (bad) atomic_min(&findings->first_bad_cell, cell);
 }

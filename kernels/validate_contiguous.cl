@@ -1,0 +1,27 @@
+// Checks the offsets of lists that lie behind one another: that they ascend inside the pool, and that
+// every list was filled.
+//
+//   findings   1   in: 0 and first_bad_cell = CELLIST_NONE; out: lists that end before they begin or
+//                  behind the pool, nodes that no record was written to, nodes of all lists
+//
+// One work-item a cell; the range is padded to whole work-groups.
+#include <cellist/lists.clh>
+
+kernel void cellist_validate_contiguous(CELLIST_LISTS(CELLIST_RECORD, lists),
+                                        volatile global cellist_findings* findings) {
+    const uint cell = get_global_id(0);
+    if (cell >= cellist_cells(lists)) return;
+    const uint begin = lists_heads[cell];
+    const uint end = lists_heads[(ulong)cell + 1];
+    const uint inserted = lists_heads[(ulong)lists_view.cells + 1 + cell];
+    // The first list begins with the pool.
+    const int broken = begin > end || end > lists_view.capacity_nodes || (cell == 0 && begin != 0);
+    // A list counts on past its end: those records were dropped.
+    const uint unfilled = !broken && inserted < end - begin ? end - begin - inserted : 0;
+    if (broken)
+        atomic_inc(&findings->broken);
+    else if (end > begin)
+        atomic_add(&findings->nodes, end - begin);
+    if (unfilled) atomic_add(&findings->unfilled, unfilled);
+    if (broken || unfilled) atomic_min(&findings->first_bad_cell, cell);
+}
