@@ -1,10 +1,14 @@
-// Sorts every list by cellist_sort_key(record), then by the members of the record in order, by
-// relinking its nodes. Any length; the records stay where they are.
+// Sorts every list by cellist_sort_key(record), then by the members of the record in order. Any
+// length, in place.
 //
-// Lists of up to CELLIST_SORT_SHORT nodes: insertion sort of (key, node) pairs in private memory,
-// while walking the list; then one pass that writes the links. Longer lists: bottom-up merge sort of
-// the linked list itself. pending[i] is a sorted list of 2^i nodes or none, and taking a node in
-// works like adding one to a binary number, each carry merging two lists of equal size.
+// Linked lists are relinked; the records stay where they are. Lists of up to CELLIST_SORT_SHORT
+// nodes: insertion sort of (key, node) pairs in private memory, while walking the list; then one pass
+// that writes the links. Longer lists: bottom-up merge sort of the list itself. pending[i] is a sorted
+// list of 2^i nodes or none, and taking a node in works like adding one to a binary number, each carry
+// merging two lists of equal size.
+//
+// Lists in one piece: insertion sort with the keys in private memory up to CELLIST_SORT_SHORT records,
+// heap sort beyond.
 //
 // One work-item a cell; the range is padded to whole work-groups. The host defines
 // cellist_sort_key(CELLIST_RECORD), which maps the key to an unsigned integer of the same order.
@@ -100,9 +104,64 @@ static inline void cellist_sort_long(CELLIST_LISTS(CELLIST_RECORD, lists), uint 
     lists_heads[cell] = sorted;
 }
 
+static inline int cellist_record_order(CELLIST_RECORD a, CELLIST_RECORD b) {
+    const ulong x = cellist_sort_key(a);
+    const ulong y = cellist_sort_key(b);
+    return x != y ? x < y : cellist_record_before(a, b, 0);
+}
+
+static inline void cellist_sort_short_piece(global CELLIST_RECORD* records, uint length) {
+    ulong keys[CELLIST_SORT_SHORT];
+    for (uint i = 0; i < length; ++i) {
+        const CELLIST_RECORD record = records[i];
+        const ulong key = cellist_sort_key(record);
+        uint at = i;
+        for (; at > 0; --at) {
+            if (keys[at - 1] < key) break;
+            if (keys[at - 1] == key && !cellist_record_before(record, records[at - 1], 0)) break;
+            keys[at] = keys[at - 1];
+            records[at] = records[at - 1];
+        }
+        keys[at] = key;
+        if (at != i) records[at] = record;
+    }
+}
+
+// Lets `record` sink from position `at` in the heap of `length` records: the last comes first.
+static inline void cellist_sift(global CELLIST_RECORD* records, uint at, uint length,
+                                CELLIST_RECORD record) {
+    while (at < length / 2) {
+        uint child = 2 * at + 1;
+        if (child + 1 < length && cellist_record_order(records[child], records[child + 1])) ++child;
+        if (!cellist_record_order(record, records[child])) break;
+        records[at] = records[child];
+        at = child;
+    }
+    records[at] = record;
+}
+
+static inline void cellist_sort_long_piece(global CELLIST_RECORD* records, uint length) {
+    for (uint i = length / 2; i > 0; --i) cellist_sift(records, i - 1, length, records[i - 1]);
+    for (uint end = length - 1; end > 0; --end) {
+        const CELLIST_RECORD last = records[end];
+        records[end] = records[0];
+        cellist_sift(records, 0, end, last);
+    }
+}
+
 kernel void cellist_sort(CELLIST_LISTS(CELLIST_RECORD, lists)) {
     const uint cell = get_global_id(0);
     if (cell >= cellist_cells(lists)) return;
-    if (!cellist_sort_short(CELLIST_PASS(lists), cell))
-        cellist_sort_long(CELLIST_PASS(lists), cell);
+    if (cellist_has_mode(lists_view, CELLIST_LINKED)) {
+        if (!cellist_sort_short(CELLIST_PASS(lists), cell))
+            cellist_sort_long(CELLIST_PASS(lists), cell);
+        return;
+    }
+    const uint begin = cellist_begin(lists_heads, lists_view, cell);
+    const uint length = cellist_end(lists_heads, lists_view, cell) - begin;
+    global CELLIST_RECORD* records = (global CELLIST_RECORD*)lists_nodes + begin;
+    if (length <= CELLIST_SORT_SHORT)
+        cellist_sort_short_piece(records, length);
+    else
+        cellist_sort_long_piece(records, length);
 }

@@ -41,12 +41,14 @@ std::string without_library_includes(const std::string& text, bool& uses_glm) {
     return out.append(rest, text.end());
 }
 
-std::string whole_source(const Source& source, const detail::Definitions& definitions) {
+std::string whole_source(const Source& source, const detail::Definitions& definitions,
+                         cl_uint modes) {
     bool uses_glm = false;
     const std::string text = without_library_includes(source.text, uses_glm);
     detail::Definitions all = definitions;
     if (uses_glm) all.add(detail::glm_source());
-    std::string whole = "#line 1 \"cellist/view.h\"\n";
+    std::string whole = "#define CELLIST_MODES " + std::to_string(modes) + "u\n";
+    whole += "#line 1 \"cellist/view.h\"\n";
     whole += kernels::view_h;
     whole += "\n#line 1 \"cellist/lists.clh\"\n";
     whole += kernels::lists_clh;
@@ -56,12 +58,12 @@ std::string whole_source(const Source& source, const detail::Definitions& defini
 }
 
 cl::Program build(detail::DeviceState& device, const Source& source,
-                  const detail::Definitions& definitions) {
+                  const detail::Definitions& definitions, cl_uint modes) {
     if (definitions.needs_fp64 && !device.info.fp64)
         throw Error("a struct has members of type double, which " + device.info.name +
                     " does not support");
     try {
-        return device.program(whole_source(source, definitions),
+        return device.program(whole_source(source, definitions, modes),
                               "-cl-std=CL1.2 -cl-kernel-arg-info " + source.options);
     } catch (const OpenClError& error) {
         std::smatch what;
@@ -164,18 +166,15 @@ cl::NDRange global_range(const Range& range) {
     }
 }
 
-}  // namespace
-
-struct Kernel::Impl {
-    std::shared_ptr<detail::DeviceState> device;
-    std::string name;
+/// The kernel, compiled for containers of some modes.
+struct Variant {
     cl::Kernel kernel;
     std::vector<Parameter> parameters;
     std::size_t work_group_limit = 0;
 
     /// Throws Error if an argument does not fit the parameter. Drivers do not all check this: PoCL
     /// takes a value of any size.
-    void check(cl_uint index, const Arguments::Argument& argument) const {
+    void check(const std::string& name, cl_uint index, const Arguments::Argument& argument) const {
         const Parameter& parameter = parameters[index];
         const bool right_kind = argument.kind == parameter.kind;
         if (right_kind && (parameter.size == 0 || argument.size == parameter.size)) return;
@@ -189,18 +188,34 @@ struct Kernel::Impl {
     }
 };
 
+}  // namespace
+
+struct Kernel::Impl {
+    std::shared_ptr<detail::DeviceState> device;
+    Source source;
+    std::string name;
+    detail::Definitions definitions;
+    std::map<cl_uint, Variant> variants;  ///< by modes
+
+    /// The kernel for containers of these modes; builds it the first time.
+    Variant& variant(cl_uint modes) {
+        if (const auto known = variants.find(modes); known != variants.end()) return known->second;
+        const cl::Program program = build(*device, source, definitions, modes);
+        return opencl([&]() -> Variant& {
+            Variant made;
+            made.kernel = cl::Kernel(program, name.c_str());
+            made.parameters = parameters_of(made.kernel, definitions);
+            made.work_group_limit =
+                made.kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device->device);
+            return variants.emplace(modes, std::move(made)).first->second;
+        });
+    }
+};
+
 Kernel::Kernel(std::shared_ptr<detail::DeviceState> device, const Source& source,
                const std::string& name, const detail::Definitions& definitions)
-    : impl_(std::make_unique<Impl>()) {
-    const cl::Program program = build(*device, source, definitions);
-    opencl([&] {
-        impl_->kernel = cl::Kernel(program, name.c_str());
-        impl_->parameters = parameters_of(impl_->kernel, definitions);
-        impl_->work_group_limit =
-            impl_->kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device->device);
-    });
-    impl_->device = std::move(device);
-    impl_->name = name;
+    : impl_(new Impl{std::move(device), source, name, definitions, {}}) {
+    impl_->variant(definitions.modes);
 }
 
 Kernel::Kernel(Kernel&&) noexcept = default;
@@ -210,25 +225,28 @@ Kernel::~Kernel() = default;
 const std::string& Kernel::name() const { return impl_->name; }
 
 cl::Event Kernel::enqueue(const Range& range, const Arguments& arguments) {
+    Variant& variant =
+        impl_->variant(arguments.modes() != 0 ? arguments.modes() : impl_->definitions.modes);
     const auto list = arguments.list();
-    if (list.size() != impl_->parameters.size())
-        throw Error("kernel " + impl_->name + " has " + std::to_string(impl_->parameters.size()) +
+    if (list.size() != variant.parameters.size())
+        throw Error("kernel " + impl_->name + " has " + std::to_string(variant.parameters.size()) +
                     " parameters and was given " + std::to_string(list.size()) +
                     " (a container counts as 4)");
     for (cl_uint i = 0; i < list.size(); ++i) {
-        impl_->check(i, list[i]);
-        opencl([&] { impl_->kernel.setArg(i, list[i].size, arguments.data(list[i])); });
+        variant.check(impl_->name, i, list[i]);
+        opencl([&] { variant.kernel.setArg(i, list[i].size, arguments.data(list[i])); });
     }
 
     cl::Event event;
     opencl([&] {
+        const cl::CommandQueue& queue = impl_->device->queue;
         const auto& extents = range.global;
         if (std::find(extents.begin(), extents.end(), 0u) != extents.end())
-            impl_->device->queue.enqueueMarkerWithWaitList(nullptr, &event);
+            queue.enqueueMarkerWithWaitList(nullptr, &event);
         else
-            impl_->device->queue.enqueueNDRangeKernel(
-                impl_->kernel, cl::NullRange, global_range(range),
-                local_range(range, impl_->work_group_limit), nullptr, &event);
+            queue.enqueueNDRangeKernel(variant.kernel, cl::NullRange, global_range(range),
+                                       local_range(range, variant.work_group_limit), nullptr,
+                                       &event);
     });
     return event;
 }

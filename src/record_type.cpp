@@ -78,6 +78,7 @@ void Definitions::add(const Definitions& other) {
     for (const std::string& text : other.texts) add(text);
     for (const RecordType& record : other.records) add(record);
     needs_fp64 = needs_fp64 || other.needs_fp64;
+    modes |= other.modes;
 }
 
 std::string Definitions::source() const {

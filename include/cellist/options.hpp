@@ -13,17 +13,32 @@ enum class Overflow {
     drop,  ///< keep what fits; the report counts what was dropped, and every list is valid
 };
 
-/// How kernels get nodes from the pool.
+/// How the nodes are arranged. Kernels do not change.
+enum class Storage {
+    /// One pass: a node from the pool, linked to its cell. Reading follows links.
+    linked,
+    /// Two passes over the same kernel, count and fill. The lists lie behind one another: reading is
+    /// fast, and the pool holds exactly the records. The kernel must insert the same records twice.
+    counted,
+    /// One pass: a number of slots for each cell. Fastest where all lists are short.
+    fixed,
+};
+
+/// How kernels get nodes from the pool of Storage::linked.
 enum class Allocation {
     sharded,  ///< up to 256 counters, probed in turn when one runs out
     global,   ///< one counter; slower wherever many work-items insert, for comparison
 };
 
 struct ListsOptions {
+    Storage storage = Storage::linked;
     Overflow overflow = Overflow::grow;
     /// Nodes in the pool at first. Without it the pool starts at one node a cell, at least 65,536,
-    /// under Overflow::grow; the other policies need it.
+    /// under Overflow::grow; the other policies need it. Storage::fixed has no use for it.
     std::optional<std::uint64_t> capacity_nodes = {};
+    /// Slots for each cell in Storage::fixed at first: 4 under Overflow::grow, which raises it to the
+    /// longest list; the other policies need it.
+    std::optional<std::uint32_t> slots = {};
     /// Device memory that heads, nodes and counters may take together.
     std::uint64_t budget_bytes = std::numeric_limits<std::uint64_t>::max();
     Allocation allocation = Allocation::sharded;

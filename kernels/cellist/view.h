@@ -23,15 +23,33 @@
 // an allocation at one moment: a counter runs past its last node by as many, and comes back.
 #define CELLIST_CAPACITY_NODES_MAX 0xC0000000u
 
+// Inserts that are counted for one cell; more of them are counted as dropped.
+#define CELLIST_CELL_COUNT_MAX 0x80000000u
+
 // Largest extent of one dimension: coordinates are compared as 32-bit integers.
 #define CELLIST_EXTENT_MAX 0x7FFFFFFFu
+
+// How the nodes are arranged, and what an insert does. A program is compiled for the modes of its
+// containers only.
+//
+//   mode        heads                                       node
+//   LINKED      cells: the first node, or CELLIST_NONE      record and link
+//   COUNTING    counts behind the offsets, as below         none: inserts only count
+//   CONTIGUOUS  cells + 1 offsets, then cells counts        record
+//   FIXED       cells: the inserts so far                   record
+#define CELLIST_LINKED 1u
+#define CELLIST_COUNTING 2u
+#define CELLIST_CONTIGUOUS 4u
+#define CELLIST_FIXED 8u
 
 // Passed to kernels by value.
 typedef struct cellist_view {
     CELLIST_UINT extent[4];       // cells along x, y, z, w; missing dimensions are 1
     CELLIST_UINT cells;           // product of the extents
     CELLIST_UINT capacity_nodes;  // nodes in the pool
-    CELLIST_UINT shard_bits;      // the pool has 2^shard_bits shards
+    CELLIST_UINT shard_bits;      // the counters have 2^shard_bits shards
+    CELLIST_UINT mode;            // one of the modes above
+    CELLIST_UINT slots;           // nodes of each cell in mode FIXED
 } cellist_view;
 
 // The counters of one shard, alone in its cache line. The struct behind the last shard holds the

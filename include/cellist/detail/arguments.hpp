@@ -64,6 +64,11 @@ public:
         arguments_.push_back({kind, offset, size});
     }
 
+    /// Tells that a container among the arguments has this mode.
+    void add_mode(cl_uint mode) { modes_ |= mode; }
+    /// The modes of all containers among the arguments.
+    [[nodiscard]] cl_uint modes() const { return modes_; }
+
     [[nodiscard]] std::span<const Argument> list() const { return arguments_; }
     [[nodiscard]] const std::byte* data(const Argument& argument) const {
         return argument.kind == Kind::local ? nullptr : bytes_.data() + argument.offset;
@@ -74,11 +79,17 @@ private:
 
     std::vector<Argument> arguments_;
     std::vector<std::byte> bytes_;
+    cl_uint modes_ = 0;
 };
 
+/// The mode in which a container is read.
+[[nodiscard]] unsigned read_mode(const ListsCore& lists);
+
 template <class T>
-Definitions definitions_used(const Lists<T>&) {
-    return definitions_of<T>();
+Definitions definitions_used(const Lists<T>& lists) {
+    Definitions definitions = definitions_of<T>();
+    definitions.modes = read_mode(lists.core());
+    return definitions;
 }
 template <class T>
 Definitions definitions_used(const Type<T>&) {

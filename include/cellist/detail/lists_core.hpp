@@ -4,11 +4,9 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include <cellist/detail/memory.hpp>
 #include <cellist/detail/record_type.hpp>
 #include <cellist/kernel.hpp>
 #include <cellist/options.hpp>
@@ -17,12 +15,17 @@
 
 namespace cellist::detail {
 
-/// Lists without the record's C++ type: heads, a pool of nodes, counters, and the kernels that work
-/// on them. The kernels see the record by its name in OpenCL C.
+class ListStorage;
+
+/// Lists without the record's C++ type: a storage, and the kernels that read and sort any storage.
+/// The kernels see the record by its name in OpenCL C.
 class ListsCore {
 public:
     ListsCore(std::shared_ptr<DeviceState> device, Definitions definitions, const Shape& shape,
               const ListsOptions& options);
+    ListsCore(ListsCore&&) noexcept;
+    ListsCore& operator=(ListsCore&&) noexcept;
+    ~ListsCore();
 
     BuildReport build(const std::function<void()>& insert);
     void clear();
@@ -36,24 +39,15 @@ public:
         const std::function<void*(std::uint64_t)>& allocate) const;
 
     [[nodiscard]] const Shape& shape() const { return shape_; }
-    [[nodiscard]] std::uint64_t capacity_nodes() const { return capacity_nodes_; }
+    [[nodiscard]] std::uint64_t capacity_nodes() const;
     [[nodiscard]] std::uint64_t pool_bytes() const;
+    /// The mode in which the lists are read, as in view.h.
+    [[nodiscard]] unsigned mode() const;
 
     /// Adds what CELLIST_LISTS declares.
     void add_to(Arguments& arguments) const;
 
 private:
-    struct Counters {
-        std::uint64_t stored = 0;
-        std::uint64_t dropped = 0;
-        std::uint64_t rejected = 0;
-    };
-
-    [[nodiscard]] std::uint64_t bytes_with(std::uint64_t capacity_nodes) const;
-    [[nodiscard]] std::optional<std::string> refusal(std::uint64_t capacity_nodes) const;
-    void allocate_pool(std::uint64_t capacity_nodes);
-    void empty_after_failure() noexcept;
-    [[nodiscard]] Counters read_counters() const;
     Kernel& kernel(const std::string& name, std::string_view source,
                    const std::string& key = {}) const;
     [[nodiscard]] Range cell_range() const;
@@ -62,13 +56,7 @@ private:
     std::shared_ptr<DeviceState> device_;
     Definitions definitions_;
     Shape shape_;
-    ListsOptions options_;
-    NodeLayout node_;
-    std::uint64_t capacity_nodes_ = 0;
-    std::uint32_t shard_bits_ = 0;
-    Memory heads_;
-    Memory nodes_;
-    Memory shards_;
+    std::unique_ptr<ListStorage> storage_;
     mutable std::map<std::string, Kernel> kernels_;  ///< the library's, by name and key
 };
 

@@ -29,6 +29,7 @@ struct Definitions {
     std::vector<RecordType> records;
     std::vector<std::string> texts;  ///< definitions of types that are not records, in order
     bool needs_fp64 = false;
+    unsigned modes = 0;  ///< of the containers that the program is built for, as in view.h
 
     /// Adds a record, a text or everything in `other` unless it is there already. Throws Error if a
     /// different record has the same name.

@@ -1,0 +1,167 @@
+#include "storage.hpp"
+
+#include <algorithm>
+
+#include "storages.hpp"
+
+namespace cellist::detail {
+
+static_assert(Shape::extent_max == CELLIST_EXTENT_MAX);
+static_assert(Shape::cells_max < CELLIST_NONE);
+
+namespace {
+
+std::uint64_t wide(cl_uint low, cl_uint high) { return (std::uint64_t{high} << 32) | low; }
+
+/// Four blocks a shard at least: more shards in a small pool only make the search for the last free
+/// nodes longer.
+cl_uint shard_bits_for(std::uint64_t capacity_nodes, Allocation allocation) {
+    if (allocation == Allocation::global) return 0;
+    cl_uint bits = 0;
+    while (bits < CELLIST_SHARD_BITS_MAX &&
+           (std::uint64_t{4} * CELLIST_BLOCK_NODES << (bits + 1)) <= capacity_nodes)
+        ++bits;
+    return bits;
+}
+
+std::string mebibytes(std::uint64_t bytes) {
+    return std::to_string(bytes) + " bytes (" + std::to_string(bytes >> 20) + " MiB)";
+}
+
+}  // namespace
+
+ListStorage::ListStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
+                         const Shape& shape, const ListsOptions& options, cl_uint mode,
+                         std::size_t node_bytes, std::uint64_t head_words)
+    : device_(std::move(device)),
+      definitions_(definitions),
+      shape_(shape),
+      options_(options),
+      mode_(mode),
+      node_bytes_(node_bytes) {
+    definitions_.modes = mode;
+    const std::uint64_t allocation = device_->info.max_allocation_bytes;
+    if (head_words > allocation / sizeof(cl_uint))
+        throw Error("the heads of a shape of " + shape.to_string() + " cells take " +
+                    mebibytes(head_words * sizeof(cl_uint)) + ", over this device's limit of " +
+                    mebibytes(allocation) + " per allocation");
+    if (head_words * sizeof(cl_uint) > options.budget_bytes)
+        throw Error("the heads of a shape of " + shape.to_string() + " cells take " +
+                    mebibytes(head_words * sizeof(cl_uint)) + ", over the budget of " +
+                    mebibytes(options.budget_bytes));
+    heads_ = Memory(device_, head_words, sizeof(cl_uint), "head buffer");
+}
+
+void ListStorage::add_to(Arguments& arguments) const {
+    const cellist_view view{
+        {static_cast<cl_uint>(shape_.extent(0)), static_cast<cl_uint>(shape_.extent(1)),
+         static_cast<cl_uint>(shape_.extent(2)), static_cast<cl_uint>(shape_.extent(3))},
+        static_cast<cl_uint>(shape_.cells()),
+        static_cast<cl_uint>(capacity_nodes_),
+        shard_bits_,
+        mode_,
+        slots_};
+    arguments.add(nodes_.cl());
+    arguments.add(heads_.cl());
+    arguments.add(shards_.cl());
+    arguments.append(Arguments::Kind::value, &view, sizeof view);
+    arguments.add_mode(mode_);
+}
+
+std::uint64_t ListStorage::bytes_with(std::uint64_t capacity_nodes) const {
+    const std::uint64_t shards =
+        (std::uint64_t{1} << shard_bits_for(capacity_nodes, options_.allocation)) + 1;
+    return heads_.size_bytes() + capacity_nodes * node_bytes_ + shards * sizeof(cellist_shard);
+}
+
+std::optional<std::string> ListStorage::refusal(std::uint64_t capacity_nodes) const {
+    const std::uint64_t allocation = device_->info.max_allocation_bytes;
+    const std::uint64_t limit =
+        std::min<std::uint64_t>(allocation / node_bytes_, CELLIST_CAPACITY_NODES_MAX);
+    if (capacity_nodes > limit)
+        return "capacity of " + std::to_string(capacity_nodes) + " nodes of " +
+               std::to_string(node_bytes_) + " bytes exceeds this device's limit of " +
+               std::to_string(limit) + " nodes (" + mebibytes(allocation) +
+               " per allocation): lower capacity_nodes or build in slices";
+    if (bytes_with(capacity_nodes) > options_.budget_bytes)
+        return "a pool of " + std::to_string(capacity_nodes) + " nodes and " +
+               std::to_string(shape_.cells()) + " cells takes " +
+               mebibytes(bytes_with(capacity_nodes)) + ", over the budget of " +
+               mebibytes(options_.budget_bytes) + ": raise budget_bytes or build in slices";
+    return {};
+}
+
+void ListStorage::require(std::uint64_t demand, const BuildReport& report) const {
+    if (options_.overflow == Overflow::stop)
+        throw OverflowError("the pool of " + std::to_string(capacity_nodes_) +
+                                " nodes is too small for " + std::to_string(demand) +
+                                " records: raise capacity_nodes or use Overflow::grow",
+                            report);
+    if (const auto reason = refusal(demand)) throw OverflowError(*reason, report);
+}
+
+void ListStorage::allocate_pool(std::uint64_t capacity_nodes) {
+    // The old nodes go first, so that the device never holds both pools.
+    capacity_nodes_ = 0;
+    nodes_ = Memory();
+    const cl_uint bits = shard_bits_for(capacity_nodes, options_.allocation);
+    shards_ = Memory(device_, (std::uint64_t{1} << bits) + 1, sizeof(cellist_shard), "counters");
+    shard_bits_ = bits;
+    nodes_ = Memory(device_, capacity_nodes, node_bytes_, "pool");
+    capacity_nodes_ = capacity_nodes;
+}
+
+ListStorage::Counters ListStorage::read_counters() const {
+    std::vector<cellist_shard> shards((std::size_t{1} << shard_bits_) + 1);
+    shards_.read(shards.data(), shards.size() * sizeof(cellist_shard));
+    Counters sum;
+    for (const cellist_shard& shard : shards) {
+        sum.allocated += shard.allocated;
+        sum.dropped += wide(shard.dropped_low, shard.dropped_high);
+        sum.rejected += wide(shard.rejected_low, shard.rejected_high);
+    }
+    return sum;
+}
+
+void ListStorage::clear_counters() {
+    constexpr cl_uint zero = 0;
+    shards_.fill(&zero, sizeof zero, shards_.size_bytes());
+}
+
+void ListStorage::update(BuildReport& report, const Counters& counters,
+                         std::uint64_t stored) const {
+    report.stored = stored;
+    report.dropped = counters.dropped;
+    report.rejected = counters.rejected;
+    report.attempted = stored + counters.dropped + counters.rejected;
+    report.capacity_nodes = capacity_nodes_;
+    ++report.passes;
+}
+
+std::unique_ptr<ListStorage> make_storage(std::shared_ptr<DeviceState> device,
+                                          const Definitions& definitions, const Shape& shape,
+                                          const ListsOptions& options) {
+    if (options.storage != Storage::fixed && !options.capacity_nodes &&
+        options.overflow != Overflow::grow)
+        throw Error("Overflow::stop and Overflow::drop need capacity_nodes");
+    if (options.storage == Storage::fixed && !options.slots && options.overflow != Overflow::grow)
+        throw Error("Overflow::stop and Overflow::drop need slots in Storage::fixed");
+    switch (options.storage) {
+        case Storage::linked:
+            return std::make_unique<LinkedStorage>(std::move(device), definitions, shape, options);
+        case Storage::counted:
+            return std::make_unique<CountedStorage>(std::move(device), definitions, shape, options);
+        case Storage::fixed:
+            return std::make_unique<FixedStorage>(std::move(device), definitions, shape, options);
+    }
+    throw Error("unknown storage");
+}
+
+Kernel ListStorage::kernel(const std::string& name, std::string_view source) const {
+    return {device_,
+            Source{.text = "#define CELLIST_RECORD " + record().name + "\n#line 1 \"" + name +
+                           ".cl\"\n" + std::string(source)},
+            name, definitions_};
+}
+
+}  // namespace cellist::detail

@@ -1,0 +1,86 @@
+#include "cellist_kernels.hpp"
+#include "storages.hpp"
+
+namespace cellist::detail {
+
+CountedStorage::CountedStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
+                               const Shape& shape, const ListsOptions& options)
+    : ListStorage(std::move(device), definitions, shape, options, CELLIST_CONTIGUOUS,
+                  definitions.records.back().size, 2 * shape.cells() + 1),
+      scan_(device_, shape.cells(), counts_at()) {
+    const std::uint64_t capacity = options.capacity_nodes.value_or(0);
+    if (const auto reason = refusal(capacity)) throw Error(*reason);
+    allocate_pool(capacity);
+    clear();
+}
+
+void CountedStorage::clear() {
+    constexpr cl_uint zero = 0;
+    heads_.fill(&zero, sizeof zero, heads_.size_bytes());
+    clear_counters();
+}
+
+void CountedStorage::clear_counts() {
+    constexpr cl_uint zero = 0;
+    const cl_int code = clEnqueueFillBuffer(device_->queue(), heads_.cl()(), &zero, sizeof zero,
+                                            counts_at() * sizeof(cl_uint),
+                                            shape_.cells() * sizeof(cl_uint), 0, nullptr, nullptr);
+    if (code != CL_SUCCESS) throw OpenClError("clEnqueueFillBuffer", code);
+}
+
+BuildReport CountedStorage::build(const std::function<void()>& insert) {
+    BuildReport report;
+    clear();
+    mode_ = CELLIST_COUNTING;
+    insert();
+    mode_ = CELLIST_CONTIGUOUS;
+    const Counters counted = read_counters();
+    const CellScan::Sums sums = scan_.sums(heads_.cl(), CELLIST_NONE);
+    const std::uint64_t demand = sums.total + counted.dropped;
+
+    update(report, counted, sums.total);
+    if (demand > capacity_nodes_ && options_.overflow != Overflow::drop) {
+        report.stored = std::min(sums.total, capacity_nodes_);
+        report.dropped = demand - report.stored;
+        require(demand, report);
+        allocate_pool(demand);
+    }
+    scan_.write_offsets(heads_.cl(), sums, capacity_nodes_);
+    if (shape_.cells() > 0) clear_counts();
+    clear_counters();
+
+    insert();
+    const Counters filled = read_counters();
+    const std::uint64_t kept = std::min(sums.total, capacity_nodes_);
+    update(report, filled, kept);
+    if (cells_not_filled() != 0 || filled.dropped != demand - kept ||
+        filled.rejected != counted.rejected)
+        throw Error(
+            "the kernel inserted other records when it filled the lists than when it "
+            "counted them: it must insert the same records every time, or use "
+            "Storage::linked");
+    return report;
+}
+
+/// Cells whose list is shorter than it was counted.
+std::uint64_t CountedStorage::cells_not_filled() {
+    cl_uint differing = 0;
+    Memory device_differing(device_, 1, sizeof differing, "findings");
+    device_differing.write(&differing, sizeof differing);
+    if (!repeats_) repeats_.emplace(kernel("cellist_repeats", kernels::repeats_cl));
+    Arguments arguments;
+    add_to(arguments);
+    arguments.add(device_differing.cl());
+    repeats_->enqueue(Range::padded(shape_.cells()), arguments);
+    device_differing.read(&differing, sizeof differing);
+    return differing;
+}
+
+void CountedStorage::recover() {
+    mode_ = CELLIST_CONTIGUOUS;
+    if (!has_pool()) allocate_pool(0);
+}
+
+Validation CountedStorage::validate() { return {0, 0, cells_not_filled(), 0}; }
+
+}  // namespace cellist::detail
