@@ -7,9 +7,9 @@
 #include <cellist/lists.clh>
 
 kernel void cellist_gather(CELLIST_LISTS(CELLIST_RECORD, lists), uint begin, uint end,
-                           global const ulong* offsets, global CELLIST_RECORD* records) {
+                           global const uint* offsets, global CELLIST_RECORD* records) {
     const uint cell = begin + get_global_id(0);
     if (cell >= end) return;
-    ulong at = offsets[cell] - offsets[begin];
+    uint at = offsets[cell] - offsets[begin];
     cellist_for_each(lists, cell, node) records[at++] = cellist_get(lists, node);
 }

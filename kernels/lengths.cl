@@ -1,14 +1,14 @@
 // The length of every list.
 //
-//   lengths   cells   out: nodes of the cell
+//   lengths   at + cells   out, from `at` on: nodes of the cell
 //
 // One work-item a cell; the range is padded to whole work-groups.
 #include <cellist/lists.clh>
 
-kernel void cellist_lengths(CELLIST_LISTS(CELLIST_RECORD, lists), global uint* lengths) {
+kernel void cellist_lengths(CELLIST_LISTS(CELLIST_RECORD, lists), global uint* lengths, uint at) {
     const uint cell = get_global_id(0);
     if (cell >= cellist_cells(lists)) return;
     uint length = 0;
     cellist_for_each(lists, cell, node) ++length;
-    lengths[cell] = length;
+    lengths[at + cell] = length;
 }

@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <numeric>
 
 #include <cellist/detail/lists_core.hpp>
 
+#include "cell_scan.hpp"
 #include "cellist_kernels.hpp"
 #include "storage.hpp"
 
@@ -72,21 +72,23 @@ cl::Event ListsCore::sort(const std::string& key) {
     return kernel("cellist_sort", kernels::sort_cl, key).enqueue(cell_range(), arguments);
 }
 
-std::vector<cl_uint> ListsCore::cell_lengths() const {
-    Memory lengths(device_, shape_.cells(), sizeof(cl_uint), "length buffer");
+/// The length of every list, in words of a device buffer that start at `at`.
+Memory ListsCore::device_lengths(std::uint64_t at) const {
+    Memory lengths(device_, at + shape_.cells(), sizeof(cl_uint), "length buffer");
     Arguments arguments;
     add_to(arguments);
     arguments.add(lengths.cl());
+    arguments.add(static_cast<cl_uint>(at));
     kernel("cellist_lengths", kernels::lengths_cl).enqueue(cell_range(), arguments);
-    std::vector<cl_uint> values(shape_.cells());
-    lengths.read(values.data(), values.size() * sizeof(cl_uint));
-    return values;
+    return lengths;
 }
 
 Lengths ListsCore::lengths() const {
+    std::vector<cl_uint> values(shape_.cells());
+    device_lengths(0).read(values.data(), values.size() * sizeof(cl_uint));
     Lengths result;
     result.histogram.resize(1);
-    for (const cl_uint length : cell_lengths()) {
+    for (const cl_uint length : values) {
         if (length >= result.histogram.size()) result.histogram.resize(std::size_t{length} + 1);
         ++result.histogram[length];
         result.total += length;
@@ -96,39 +98,61 @@ Lengths ListsCore::lengths() const {
     return result;
 }
 
+/// Where each list goes when all lists lie behind one another: cells + 1 offsets, then scratch.
+ListsCore::Offsets ListsCore::device_offsets() const {
+    const std::uint64_t counts_at = shape_.cells() + 1;
+    Memory words = device_lengths(counts_at);
+    CellScan scan(device_, shape_.cells(), static_cast<cl_uint>(counts_at));
+    const CellScan::Sums sums = scan.sums(words.cl(), CELLIST_NONE);
+    scan.write_offsets(words.cl(), sums, sums.total);
+    return {std::move(words), sums.total};
+}
+
+/// Copies the lists of the cells begin ... end - 1 to the begin of `records`.
+void ListsCore::gather(std::uint64_t begin, std::uint64_t end, const Offsets& offsets,
+                       const cl::Buffer& records) const {
+    Arguments arguments;
+    add_to(arguments);
+    arguments.add(static_cast<cl_uint>(begin));
+    arguments.add(static_cast<cl_uint>(end));
+    arguments.add(offsets.words.cl());
+    arguments.add(records);
+    kernel("cellist_gather", kernels::gather_cl).enqueue(Range::padded(end - begin), arguments);
+}
+
 std::vector<std::uint64_t> ListsCore::download(
     const std::function<void*(std::uint64_t)>& allocate) const {
-    const std::vector<cl_uint> lengths = cell_lengths();
-    std::vector<std::uint64_t> offsets(lengths.size() + 1, 0);
-    std::inclusive_scan(lengths.begin(), lengths.end(), offsets.begin() + 1, std::plus<>(),
-                        std::uint64_t{0});
-
-    const std::size_t record_bytes = definitions_.records.back().size;
-    auto* target = static_cast<std::byte*>(allocate(offsets.back()));
-    Memory device_offsets(device_, offsets.size(), sizeof(cl_ulong), "offset buffer");
-    device_offsets.write(offsets.data(), offsets.size() * sizeof(cl_ulong));
+    const Offsets device = device_offsets();
+    std::vector<cl_uint> words(shape_.cells() + 1);
+    device.words.read(words.data(), words.size() * sizeof(cl_uint));
+    std::vector<std::uint64_t> offsets(words.begin(), words.end());
 
     // Up to 256 MiB of lists at a time, at least one list, so that the copy fits beside the pool.
+    const std::size_t record_bytes = definitions_.records.back().size;
     const std::uint64_t most = (std::uint64_t{256} << 20) / record_bytes;
-    Kernel& gather = kernel("cellist_gather", kernels::gather_cl);
-    for (std::size_t begin = 0; begin < lengths.size();) {
-        std::size_t end = begin + 1;
-        while (end < lengths.size() && offsets[end + 1] - offsets[begin] <= most) ++end;
+    auto* target = static_cast<std::byte*>(allocate(device.total));
+    for (std::uint64_t begin = 0; begin < shape_.cells();) {
+        std::uint64_t end = begin + 1;
+        while (end < shape_.cells() && offsets[end + 1] - offsets[begin] <= most) ++end;
         const std::uint64_t count = offsets[end] - offsets[begin];
         if (count > 0) {
             Memory records(device_, count, record_bytes, "download buffer");
-            Arguments arguments;
-            add_to(arguments);
-            arguments.add(static_cast<cl_uint>(begin));
-            arguments.add(static_cast<cl_uint>(end));
-            arguments.add(device_offsets.cl());
-            arguments.add(records.cl());
-            gather.enqueue(Range::padded(end - begin), arguments);
+            gather(begin, end, device, records.cl());
             records.read(target + offsets[begin] * record_bytes, count * record_bytes);
         }
         begin = end;
     }
     return offsets;
+}
+
+void ListsCore::pack(const cl::Buffer& offsets,
+                     const std::function<cl::Buffer(std::uint64_t)>& allocate) const {
+    const Offsets device = device_offsets();
+    opencl([&] {
+        device_->queue.enqueueCopyBuffer(device.words.cl(), offsets, 0, 0,
+                                         (shape_.cells() + 1) * sizeof(cl_uint));
+    });
+    gather(0, shape_.cells(), device, allocate(device.total));
 }
 
 }  // namespace cellist::detail

@@ -18,8 +18,7 @@ class Buffer {
 public:
     /// Room for `size` elements, uninitialised. Throws Error if that is more than the device can
     /// allocate at once.
-    Buffer(const Device& device, std::size_t size)
-        : memory_(device.state(), size, sizeof(T)), size_(size) {}
+    Buffer(const Device& device, std::size_t size) : Buffer(device.state(), size) {}
 
     /// A copy of `elements`. Blocks until they are copied.
     Buffer(const Device& device, std::span<const T> elements) : Buffer(device, elements.size()) {
@@ -40,6 +39,10 @@ public:
 
     /// Sets every element to `value`. Blocks only where sizeof(T) is no power of two up to 128.
     void fill(const T& value) { memory_.fill(&value, sizeof(T), size_ * sizeof(T)); }
+
+    /// @private
+    Buffer(const std::shared_ptr<detail::DeviceState>& device, std::size_t size)
+        : memory_(device, size, sizeof(T)), size_(size) {}
 
 private:
     detail::Memory memory_;

@@ -18,6 +18,14 @@
 
 namespace cellist {
 
+/// The lists of all cells in device memory, one behind the other: the records of cell c are
+/// records[offsets[c]] ... records[offsets[c + 1] - 1].
+template <class T>
+struct Packed {
+    Buffer<cl_uint> offsets;  ///< cells + 1
+    Buffer<T> records;
+};
+
 /// A list of records T for each cell of a shape, in device memory.
 ///
 /// Kernels fill the lists concurrently, with cellist_insert; see kernels/cellist/lists.clh for what
@@ -80,6 +88,17 @@ public:
             return records.data();
         });
         return {shape(), std::move(offsets), std::move(records)};
+    }
+
+    /// A copy of all lists in device memory, one behind the other, for kernels that leave the
+    /// container. Blocks until it knows the size.
+    [[nodiscard]] Packed<T> pack() const {
+        Packed<T> packed{{core_.device(), shape().cells() + 1}, {core_.device(), 0}};
+        core_.pack(packed.offsets.cl(), [&](std::uint64_t count) {
+            packed.records = Buffer<T>(core_.device(), count);
+            return packed.records.cl();
+        });
+        return packed;
     }
 
     /// Checks that every allocated node is reached from exactly one head, exactly once. Finds any

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <cellist/detail/memory.hpp>
 #include <cellist/detail/record_type.hpp>
 #include <cellist/kernel.hpp>
 #include <cellist/options.hpp>
@@ -38,9 +39,15 @@ public:
     [[nodiscard]] std::vector<std::uint64_t> download(
         const std::function<void*(std::uint64_t)>& allocate) const;
 
+    /// Writes cells + 1 offsets, calls `allocate` with the number of records, and copies the lists to
+    /// the buffer that it returns, one behind the other.
+    void pack(const cl::Buffer& offsets,
+              const std::function<cl::Buffer(std::uint64_t)>& allocate) const;
+
     [[nodiscard]] const Shape& shape() const { return shape_; }
     [[nodiscard]] std::uint64_t capacity_nodes() const;
     [[nodiscard]] std::uint64_t pool_bytes() const;
+    [[nodiscard]] const std::shared_ptr<DeviceState>& device() const { return device_; }
     /// The mode in which the lists are read, as in view.h.
     [[nodiscard]] unsigned mode() const;
 
@@ -51,7 +58,14 @@ private:
     Kernel& kernel(const std::string& name, std::string_view source,
                    const std::string& key = {}) const;
     [[nodiscard]] Range cell_range() const;
-    [[nodiscard]] std::vector<cl_uint> cell_lengths() const;
+    struct Offsets {
+        Memory words;
+        std::uint64_t total;
+    };
+    [[nodiscard]] Memory device_lengths(std::uint64_t at) const;
+    [[nodiscard]] Offsets device_offsets() const;
+    void gather(std::uint64_t begin, std::uint64_t end, const Offsets& offsets,
+                const cl::Buffer& records) const;
 
     std::shared_ptr<DeviceState> device_;
     Definitions definitions_;
