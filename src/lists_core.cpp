@@ -8,6 +8,13 @@
 
 namespace cellist::detail {
 
+namespace {
+
+/// Builds in which the demand grows with every pass end here: the kernel does not repeat itself.
+constexpr std::uint32_t passes_max = 8;
+
+}  // namespace
+
 ListsCore::ListsCore(std::shared_ptr<DeviceState> device, Definitions definitions,
                      const Shape& shape, const ListsOptions& options)
     : device_(std::move(device)),
@@ -21,17 +28,37 @@ ListsCore::ListsCore(ListsCore&&) noexcept = default;
 ListsCore& ListsCore::operator=(ListsCore&&) noexcept = default;
 ListsCore::~ListsCore() = default;
 
-BuildReport ListsCore::build(const std::function<void()>& insert) {
+std::vector<BuildReport> ListsCore::build(std::span<ListsCore* const> containers,
+                                          const std::function<void()>& insert) {
+    std::vector<BuildReport> reports(containers.size());
     try {
-        return storage_->build(insert);
-    } catch (...) {
-        try {
-            storage_->recover();
-            storage_->clear();
-        } catch (const Error&) {
-            // The device is lost; the error that is under way says why.
+        for (ListsCore* container : containers) container->storage_->start();
+        for (std::uint32_t pass = 1;; ++pass) {
+            for (ListsCore* container : containers) container->storage_->begin_pass();
+            insert();
+            bool complete = true;
+            for (std::size_t i = 0; i < containers.size(); ++i)
+                complete = containers[i]->storage_->end_pass(reports[i]) && complete;
+            if (complete) return reports;
+            if (pass == passes_max)
+                throw OverflowError("the kernel inserted more records in each of " +
+                                        std::to_string(passes_max) +
+                                        " passes: it must insert the same records every time",
+                                    reports.front());
         }
+    } catch (...) {
+        for (ListsCore* container : containers) container->empty_after_failure();
         throw;
+    }
+}
+
+/// Leaves the lists empty, whatever failed before.
+void ListsCore::empty_after_failure() noexcept {
+    try {
+        storage_->recover();
+        storage_->clear();
+    } catch (const Error&) {
+        // The device is lost; the error that is under way says why.
     }
 }
 

@@ -28,9 +28,15 @@ public:
     /// Empties the lists. Does not block.
     virtual void clear() = 0;
 
-    /// Runs the passes of a build, each of which calls `insert` once, and grows, stops or drops by
-    /// the options. Throws OverflowError; the caller empties the lists then.
-    virtual BuildReport build(const std::function<void()>& insert) = 0;
+    /// A build is start(), then begin_pass(), the user's kernels and end_pass() until end_pass() says
+    /// that the lists are complete. More passes may follow, where another container needs them: they
+    /// fill the lists anew.
+    virtual void start() {}
+    /// Prepares the next run of the kernels.
+    virtual void begin_pass() = 0;
+    /// Takes the counters of a run into the report, and grows, stops or drops by the options. True if
+    /// the lists are complete. Throws OverflowError; the caller empties the lists then. Blocks.
+    virtual bool end_pass(BuildReport& report) = 0;
 
     /// Frees and makes what a failed build may have left undone, without nodes.
     virtual void recover() = 0;

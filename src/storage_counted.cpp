@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "cellist_kernels.hpp"
 #include "storages.hpp"
 
@@ -21,6 +23,7 @@ void CountedStorage::clear() {
 }
 
 void CountedStorage::clear_counts() {
+    if (shape_.cells() == 0) return;
     constexpr cl_uint zero = 0;
     const cl_int code = clEnqueueFillBuffer(device_->queue(), heads_.cl()(), &zero, sizeof zero,
                                             counts_at() * sizeof(cl_uint),
@@ -28,38 +31,53 @@ void CountedStorage::clear_counts() {
     if (code != CL_SUCCESS) throw OpenClError("clEnqueueFillBuffer", code);
 }
 
-BuildReport CountedStorage::build(const std::function<void()>& insert) {
-    BuildReport report;
-    clear();
-    mode_ = CELLIST_COUNTING;
-    insert();
-    mode_ = CELLIST_CONTIGUOUS;
-    const Counters counted = read_counters();
-    const CellScan::Sums sums = scan_.sums(heads_.cl(), CELLIST_NONE);
-    const std::uint64_t demand = sums.total + counted.dropped;
+void CountedStorage::begin_pass() {
+    if (!counted_) {
+        clear();
+        mode_ = CELLIST_COUNTING;
+    } else {
+        clear_counts();
+        clear_counters();
+    }
+}
 
-    update(report, counted, sums.total);
-    if (demand > capacity_nodes_ && options_.overflow != Overflow::drop) {
-        report.stored = std::min(sums.total, capacity_nodes_);
-        report.dropped = demand - report.stored;
-        require(demand, report);
-        allocate_pool(demand);
+bool CountedStorage::end_pass(BuildReport& report) {
+    mode_ = CELLIST_CONTIGUOUS;
+    const Counters counters = read_counters();
+    if (!counted_) {
+        counters_ = counters;
+        place_lists(report);
+        counted_ = true;
+        return false;
+    }
+    update(report, counters, kept_);
+    check_repeats(counters);
+    return true;
+}
+
+/// After the counting pass: makes room for all records, or decides which cells go short.
+void CountedStorage::place_lists(BuildReport& report) {
+    const CellScan::Sums sums = scan_.sums(heads_.cl(), CELLIST_NONE);
+    demand_ = sums.total + counters_.dropped;
+    kept_ = std::min(demand_, capacity_nodes_);
+    update(report, counters_, kept_);
+    report.dropped = demand_ - kept_;
+    report.attempted = demand_ + counters_.rejected;
+    if (kept_ < demand_ && options_.overflow != Overflow::drop) {
+        require(demand_, report);
+        allocate_pool(demand_);
+        kept_ = demand_;
     }
     scan_.write_offsets(heads_.cl(), sums, capacity_nodes_);
-    if (shape_.cells() > 0) clear_counts();
-    clear_counters();
+}
 
-    insert();
-    const Counters filled = read_counters();
-    const std::uint64_t kept = std::min(sums.total, capacity_nodes_);
-    update(report, filled, kept);
-    if (cells_not_filled() != 0 || filled.dropped != demand - kept ||
-        filled.rejected != counted.rejected)
-        throw Error(
-            "the kernel inserted other records when it filled the lists than when it "
-            "counted them: it must insert the same records every time, or use "
-            "Storage::linked");
-    return report;
+void CountedStorage::check_repeats(const Counters& filled) {
+    if (cells_not_filled() == 0 && filled.dropped == demand_ - kept_ &&
+        filled.rejected == counters_.rejected)
+        return;
+    throw Error(
+        "the kernel inserted other records when it filled the lists than when it counted them: it "
+        "must insert the same records every time, or use Storage::linked");
 }
 
 /// Cells whose list is shorter than it was counted.
@@ -77,6 +95,7 @@ std::uint64_t CountedStorage::cells_not_filled() {
 }
 
 void CountedStorage::recover() {
+    counted_ = false;
     mode_ = CELLIST_CONTIGUOUS;
     if (!has_pool()) allocate_pool(0);
 }

@@ -34,27 +34,20 @@ void FixedStorage::clear() {
     clear_counters();
 }
 
-BuildReport FixedStorage::build(const std::function<void()>& insert) {
-    BuildReport report;
-    for (;;) {
-        clear();
-        insert();
-        const Counters counters = read_counters();
-        const CellScan::Sums sums = scan_.sums(heads_.cl(), slots_);
-        update(report, counters, sums.total);
-        if (counters.dropped == 0 || options_.overflow == Overflow::drop) return report;
+bool FixedStorage::end_pass(BuildReport& report) {
+    const Counters counters = read_counters();
+    const CellScan::Sums sums = scan_.sums(heads_.cl(), slots_);
+    update(report, counters, sums.total);
+    if (counters.dropped == 0 || options_.overflow == Overflow::drop) return true;
 
-        if (options_.overflow == Overflow::stop)
-            throw OverflowError(std::to_string(slots_) +
-                                    " slots for each cell are too few for a "
-                                    "list of " +
-                                    std::to_string(sums.longest) +
-                                    " records: raise slots or use Overflow::grow",
-                                report);
-        require(nodes_with(sums.longest), report);
-        if (report.passes == passes_max) throw repeats_error(report);
-        set_slots(sums.longest);
-    }
+    if (options_.overflow == Overflow::stop)
+        throw OverflowError(
+            std::to_string(slots_) + " slots for each cell are too few for a list of " +
+                std::to_string(sums.longest) + " records: raise slots or use Overflow::grow",
+            report);
+    require(nodes_with(sums.longest), report);
+    set_slots(sums.longest);
+    return false;
 }
 
 void FixedStorage::recover() {

@@ -37,20 +37,15 @@ void LinkedStorage::clear() {
     clear_counters();
 }
 
-BuildReport LinkedStorage::build(const std::function<void()>& insert) {
-    BuildReport report;
-    for (;;) {
-        clear();
-        insert();
-        const Counters counters = read_counters();
-        update(report, counters, counters.allocated);
-        if (counters.dropped == 0 || options_.overflow == Overflow::drop) return report;
+bool LinkedStorage::end_pass(BuildReport& report) {
+    const Counters counters = read_counters();
+    update(report, counters, counters.allocated);
+    if (counters.dropped == 0 || options_.overflow == Overflow::drop) return true;
 
-        const std::uint64_t demand = report.stored + report.dropped;
-        require(demand, report);
-        if (report.passes == passes_max) throw repeats_error(report);
-        allocate_pool(demand);
-    }
+    const std::uint64_t demand = report.stored + report.dropped;
+    require(demand, report);
+    allocate_pool(demand);
+    return false;
 }
 
 void LinkedStorage::recover() {

@@ -7,23 +7,14 @@
 
 namespace cellist::detail {
 
-/// Builds in which the demand grows with every pass end here: the kernel does not repeat itself.
-inline constexpr std::uint32_t passes_max = 8;
-
-/// What a build throws then.
-[[nodiscard]] inline OverflowError repeats_error(const BuildReport& report) {
-    return {"the kernel inserted more records in each of " + std::to_string(passes_max) +
-                " passes: it must insert the same records every time",
-            report};
-}
-
 /// A head a cell and a pool of nodes with links; one pass.
 class LinkedStorage final : public ListStorage {
 public:
     LinkedStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
                   const Shape& shape, const ListsOptions& options);
     void clear() override;
-    BuildReport build(const std::function<void()>& insert) override;
+    void begin_pass() override { clear(); }
+    bool end_pass(BuildReport& report) override;
     void recover() override;
     Validation validate() override;
 
@@ -37,16 +28,24 @@ public:
     CountedStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
                    const Shape& shape, const ListsOptions& options);
     void clear() override;
-    BuildReport build(const std::function<void()>& insert) override;
+    void start() override { counted_ = false; }
+    void begin_pass() override;
+    bool end_pass(BuildReport& report) override;
     void recover() override;
     Validation validate() override;
 
 private:
+    void place_lists(BuildReport& report);
+    void check_repeats(const Counters& filled);
     void clear_counts();
     [[nodiscard]] cl_uint counts_at() const { return static_cast<cl_uint>(shape_.cells() + 1); }
     [[nodiscard]] std::uint64_t cells_not_filled();
 
     CellScan scan_;
+    bool counted_ = false;      ///< the next pass fills
+    Counters counters_;         ///< of the counting pass
+    std::uint64_t demand_ = 0;  ///< records that the counting pass saw inside the shape
+    std::uint64_t kept_ = 0;    ///< those of them that fit
     std::optional<Kernel> repeats_;
 };
 
@@ -56,7 +55,8 @@ public:
     FixedStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
                  const Shape& shape, const ListsOptions& options);
     void clear() override;
-    BuildReport build(const std::function<void()>& insert) override;
+    void begin_pass() override { clear(); }
+    bool end_pass(BuildReport& report) override;
     void recover() override;
     Validation validate() override;
 

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <concepts>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <cellist/detail/lists_core.hpp>
 #include <cellist/device.hpp>
@@ -58,7 +61,10 @@ public:
 
     /// The same for several inserting kernels: `insert` enqueues all of them with Kernel::run, and is
     /// called again after the pool has grown.
-    BuildReport build(std::invocable auto&& insert) { return core_.build(insert); }
+    BuildReport build(std::invocable auto&& insert) {
+        detail::ListsCore* core = &core_;
+        return detail::ListsCore::build({&core, 1}, insert).front();
+    }
 
     /// Empties the lists; the pool keeps its capacity. Does not block.
     void clear() { core_.clear(); }
@@ -114,9 +120,26 @@ public:
 
     /// @private
     [[nodiscard]] const detail::ListsCore& core() const { return core_; }
+    /// @private
+    [[nodiscard]] detail::ListsCore& core() { return core_; }
 
 private:
     detail::ListsCore core_;
 };
+
+/// Fills several containers at once: `insert` enqueues the kernels that fill them with Kernel::run, and
+/// is called again when one of the pools has grown. A report for each container, in order. After an
+/// exception all of them are empty. Blocks.
+///
+///     auto [near, far] = cellist::build([&] { sort_out.run(n, near_lists, far_lists, points); },
+///                                       near_lists, far_lists);
+template <class... T>
+std::array<BuildReport, sizeof...(T)> build(std::invocable auto&& insert, Lists<T>&... lists) {
+    const std::array<detail::ListsCore*, sizeof...(T)> cores{&lists.core()...};
+    const std::vector<BuildReport> reports = detail::ListsCore::build(cores, insert);
+    std::array<BuildReport, sizeof...(T)> result;
+    std::copy(reports.begin(), reports.end(), result.begin());
+    return result;
+}
 
 }  // namespace cellist

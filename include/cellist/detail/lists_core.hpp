@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,9 @@ public:
     ListsCore& operator=(ListsCore&&) noexcept;
     ~ListsCore();
 
-    BuildReport build(const std::function<void()>& insert);
+    /// Builds all containers at once: `insert` runs the kernels that fill them. A report each.
+    static std::vector<BuildReport> build(std::span<ListsCore* const> containers,
+                                          const std::function<void()>& insert);
     void clear();
     cl::Event sort(const std::string& key);
     [[nodiscard]] Lengths lengths() const;
@@ -55,6 +58,7 @@ public:
     void add_to(Arguments& arguments) const;
 
 private:
+    void empty_after_failure() noexcept;
     Kernel& kernel(const std::string& name, std::string_view source,
                    const std::string& key = {}) const;
     [[nodiscard]] Range cell_range() const;
