@@ -5,6 +5,17 @@
 
 namespace cellist::detail {
 
+namespace {
+
+/// As cellist_piece_findings in pieces.cl.
+struct PieceFindings {
+    cl_uint broken_places;
+    cl_uint unfilled_cells;
+    cl_uint first_bad_cell;
+};
+
+}  // namespace
+
 CountedStorage::CountedStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
                                const Shape& shape, const ListsOptions& options)
     : ListStorage(std::move(device), definitions, shape, options, CELLIST_CONTIGUOUS,
@@ -72,7 +83,7 @@ void CountedStorage::place_lists(BuildReport& report) {
 }
 
 void CountedStorage::check_repeats(const Counters& filled) {
-    if (cells_not_filled() == 0 && filled.dropped == demand_ - kept_ &&
+    if (validate().ok() && filled.dropped == demand_ - kept_ &&
         filled.rejected == counters_.rejected)
         return;
     throw Error(
@@ -80,18 +91,17 @@ void CountedStorage::check_repeats(const Counters& filled) {
         "must insert the same records every time, or use Storage::linked");
 }
 
-/// Cells whose list is shorter than it was counted.
-std::uint64_t CountedStorage::cells_not_filled() {
-    cl_uint differing = 0;
-    Memory device_differing(device_, 1, sizeof differing, "findings");
-    device_differing.write(&differing, sizeof differing);
-    if (!repeats_) repeats_.emplace(kernel("cellist_repeats", kernels::repeats_cl));
+Validation CountedStorage::validate() {
+    PieceFindings findings{0, 0, CELLIST_NONE};
+    Memory device_findings(device_, 1, sizeof findings, "findings");
+    device_findings.write(&findings, sizeof findings);
+    if (!pieces_) pieces_.emplace(kernel("cellist_pieces", kernels::pieces_cl));
     Arguments arguments;
     add_to(arguments);
-    arguments.add(device_differing.cl());
-    repeats_->enqueue(Range::padded(shape_.cells()), arguments);
-    device_differing.read(&differing, sizeof differing);
-    return differing;
+    arguments.add(device_findings.cl());
+    pieces_->enqueue(Range::padded(shape_.cells()), arguments);
+    device_findings.read(&findings, sizeof findings);
+    return {findings.broken_places, 0, findings.unfilled_cells, findings.first_bad_cell};
 }
 
 void CountedStorage::recover() {
@@ -99,7 +109,5 @@ void CountedStorage::recover() {
     mode_ = CELLIST_CONTIGUOUS;
     if (!has_pool()) allocate_pool(0);
 }
-
-Validation CountedStorage::validate() { return {0, 0, cells_not_filled(), 0}; }
 
 }  // namespace cellist::detail

@@ -39,14 +39,13 @@ private:
     void check_repeats(const Counters& filled);
     void clear_counts();
     [[nodiscard]] cl_uint counts_at() const { return static_cast<cl_uint>(shape_.cells() + 1); }
-    [[nodiscard]] std::uint64_t cells_not_filled();
 
     CellScan scan_;
     bool counted_ = false;      ///< the next pass fills
     Counters counters_;         ///< of the counting pass
     std::uint64_t demand_ = 0;  ///< records that the counting pass saw inside the shape
     std::uint64_t kept_ = 0;    ///< those of them that fit
-    std::optional<Kernel> repeats_;
+    std::optional<Kernel> pieces_;
 };
 
 /// A number of slots for each cell; one pass.
