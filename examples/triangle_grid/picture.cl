@@ -79,10 +79,10 @@ static float3 light_on(GRID_SCENE(scene), const Surface surface, const Camera ca
     float3 light = (float3)(0.0f);
     const float facing = dot(surface.normal, to_sun);
     if (facing > 0.0f && !grid_any_hit(GRID_PASS(scene), start, start + FAR_AWAY * to_sun))
-        light += 1.9f * facing * (float3)(1.0f, 0.93f, 0.82f);
+        light += 1.35f * facing * (float3)(1.0f, 0.93f, 0.82f);
     const float3 up = random_direction(surface.normal, state);
     if (up.y > 0.0f) {
-        if (!grid_any_hit(GRID_PASS(scene), start, start + FAR_AWAY * up)) light += 0.6f * sky(up);
+        if (!grid_any_hit(GRID_PASS(scene), start, start + FAR_AWAY * up)) light += 0.75f * sky(up);
     } else if (!grid_any_hit(GRID_PASS(scene), start,
                              start + (camera.floor - start.y) / fmin(up.y, -1e-3f) * up)) {
         light += (float3)(0.18f);  // from the floor

@@ -13,7 +13,7 @@ struct PictureOptions {
     std::filesystem::path out;
     int width = 960;
     int height = 640;
-    int samples = 32;  ///< segments from the eye a pixel
+    int samples = 16;  ///< segments from the eye a pixel
 };
 
 /// Draws the mesh, which fits into the unit sphere, on a floor: a picture of what the queries are
