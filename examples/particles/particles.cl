@@ -48,15 +48,20 @@ static uint are_neighbours(Particle a, Particle b, Space space) {
 
 // ---- cells -----------------------------------------------------------------------------------
 
-// The folded cell of a coordinate that was multiplied by cells_per_unit. Coordinates that no int can
-// hold are in the outermost cell that it can.
+// The list that a cell shares with those `extent` cells away.
 static int fold(int cell, int extent) {
     const int rest = cell % extent;
     return rest < 0 ? rest + extent : rest;
 }
 
-static int cell_of(float x, Space space) {
-    const int cell = convert_int_sat_rtn(x * space.cells_per_unit);
+// A coordinate in cells. What lies beyond 2^30 cells counts as being there, so that an int holds every
+// cell; like rounding, this brings no two places further apart.
+static float place_of(float x, Space space) {
+    return clamp(x * space.cells_per_unit, -0x1p30f, 0x1p30f);
+}
+
+static int list_of(float x, Space space) {
+    const int cell = convert_int_rtn(place_of(x, space));
     // The last float under the period may be rounded up to it.
     return fold(isinf(space.period) ? cell : min(cell, space.extent - 1), space.extent);
 }
@@ -75,13 +80,13 @@ typedef struct {
 // wherever it is. Where floats are so coarse that the slack spans cells, more cells are visited.
 static Around cells_around(float x, float reach, Space space) {
     Around around;
-    around.middle = x * space.cells_per_unit;
+    around.middle = place_of(x, space);
     around.slack = fma(fabs(around.middle), 0x1p-20f, 0x1p-12f);
-    around.first = convert_int_sat_rtn(around.middle - reach - around.slack);
-    const int last = convert_int_sat_rtn(around.middle + reach + around.slack);
-    const long count = (long)last - around.first + 1;
+    around.first = convert_int_rtn(around.middle - reach - around.slack);
+    const int last = convert_int_rtn(around.middle + reach + around.slack);
+    const int count = last - around.first + 1;
     around.whole = count > space.extent;
-    around.count = around.whole ? space.extent : (int)count;
+    around.count = min(count, space.extent);
     return around;
 }
 
@@ -104,8 +109,8 @@ kernel void insert_particles(CELLIST_LISTS(Particle, particles), global const fl
     const int valid = isfinite(point.x) && isfinite(point.y) && isfinite(point.z);
     const Particle particle = {wrap(point.x, space.period), wrap(point.y, space.period),
                                wrap(point.z, space.period), i};
-    const uint cell = valid ? cellist_cell3(particles, cell_of(particle.x, space),
-                                            cell_of(particle.y, space), cell_of(particle.z, space))
+    const uint cell = valid ? cellist_cell3(particles, list_of(particle.x, space),
+                                            list_of(particle.y, space), list_of(particle.z, space))
                             : CELLIST_NONE;
     cellist_insert(particles, cell, particle);
 }
