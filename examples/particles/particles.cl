@@ -61,7 +61,7 @@ static float place_of(float x, Space space) {
 }
 
 static int list_of(float x, Space space) {
-    const int cell = convert_int_rtn(place_of(x, space));
+    const int cell = (int)floor(place_of(x, space));
     // The last float under the period may be rounded up to it.
     return fold(isinf(space.period) ? cell : min(cell, space.extent - 1), space.extent);
 }
@@ -82,8 +82,8 @@ static Around cells_around(float x, float reach, Space space) {
     Around around;
     around.middle = place_of(x, space);
     around.slack = fma(fabs(around.middle), 0x1p-20f, 0x1p-12f);
-    around.first = convert_int_rtn(around.middle - reach - around.slack);
-    const int last = convert_int_rtn(around.middle + reach + around.slack);
+    around.first = (int)floor(around.middle - reach - around.slack);
+    const int last = (int)floor(around.middle + reach + around.slack);
     const int count = last - around.first + 1;
     around.whole = count > space.extent;
     around.count = min(count, space.extent);
