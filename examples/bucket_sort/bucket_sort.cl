@@ -10,8 +10,8 @@
 // bucket    of each record
 #include <cellist/lists.clh>
 
-// Both in one number, in the same order. Payloads are below payload_limit; without gaps between them,
-// equal keys are spread evenly.
+// Both in one number, in the same order. Payloads are below payload_limit; without gaps between
+// them, equal keys are spread evenly.
 static ulong joined(uint key, uint payload, ulong payload_limit) {
     return key * payload_limit + payload;
 }

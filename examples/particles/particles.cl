@@ -2,12 +2,13 @@
 // are looked for in the lists of the cells around it.
 //
 // The cells are folded. Space is divided into cells without end, and cell (x, y, z) shares the list
-// (x mod extent, y mod extent, z mod extent) with others, so that the memory depends on the number of
-// particles and not on where they are: one particle far away costs one node. What shares a list by
-// folding alone is told apart by its distance. Neighbouring cells stay neighbours, and up to
+// (x mod extent, y mod extent, z mod extent) with others, so that the memory depends on the number
+// of particles and not on where they are: one particle far away costs one node. What shares a list
+// by folding alone is told apart by its distance. Neighbouring cells stay neighbours, and up to
 // `extent` cells in a row have lists of their own, so no list is visited twice.
 //
-// In a periodic box, the box is a whole number of cells wide, and folding is what makes it periodic.
+// In a periodic box, the box is a whole number of cells wide, and folding is what makes it
+// periodic.
 //
 // The lists are then packed: particles in the order of cells, which is what makes the search fast.
 //
@@ -54,8 +55,8 @@ static int fold(int cell, int extent) {
     return rest < 0 ? rest + extent : rest;
 }
 
-// A coordinate in cells. What lies beyond 2^30 cells counts as being there, so that an int holds every
-// cell; like rounding, this brings no two places further apart.
+// A coordinate in cells. What lies beyond 2^30 cells counts as being there, so that an int holds
+// every cell; like rounding, this brings no two places further apart.
 static float place_of(float x, Space space) {
     return clamp(x * space.cells_per_unit, -0x1p30f, 0x1p30f);
 }
@@ -90,7 +91,7 @@ static Around cells_around(float x, float reach, Space space) {
     return around;
 }
 
-// The square of the distance between the particle and its i-th cell along this axis, at most.
+// The square of the distance between the particle and its i-th cell along this axis, or less.
 static float gap_squared(Around around, int i) {
     if (around.whole) return 0.0f;
     const float cell = (float)(around.first + i);

@@ -17,9 +17,9 @@ struct Comparison {
 };
 
 /// Finds the neighbours of `sample` points (the first ones, then evenly spread) on the CPU, with
-/// nanoflann's k-d tree where the program was built with it, else of at most 500 by looking at every
-/// point, and compares them with what the device found. Who is a neighbour is decided in the same arithmetic,
-/// so there is no tolerance.
+/// nanoflann's k-d tree where the program was built with it, else of at most 500 by looking at
+/// every point, and compares them with what the device found. Who is a neighbour is decided in the
+/// same arithmetic, so there is no tolerance.
 [[nodiscard]] Comparison compare(const Scene& scene, std::span<const cl_uint2> found,
                                  std::size_t sample);
 

@@ -22,8 +22,8 @@ struct Scene {
     std::size_t invalid = 0;        ///< points with a coordinate that is NaN or infinite
 };
 
-/// Points that fill the unit box evenly, with about `neighbours` neighbours each. From 16 points on,
-/// one lies far outside of the box, and three have coordinates that are no numbers.
+/// Points that fill the unit box evenly, with about `neighbours` neighbours each. From 16 points
+/// on, one lies far outside of the box, and three have coordinates that are no numbers.
 [[nodiscard]] Scene make_scene(std::size_t points, double neighbours, Box box, std::uint32_t seed);
 
 [[nodiscard]] bool is_finite(const cl_float4& point);

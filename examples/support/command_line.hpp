@@ -30,8 +30,8 @@ namespace support {
 [[noreturn]] void refuse(const std::string& option, const std::string& text,
                          const std::string& expected);
 
-/// What main of an example does: prints errors in one line, behind the program's name. The exit code
-/// is 0, or 1 where `program` threw or found a difference and returned false.
+/// What main of an example does: prints errors in one line, behind the program's name. The exit
+/// code is 0, or 1 where `program` threw or found a difference and returned false.
 int run_program(const std::string& name, std::predicate auto&& program);
 
 /// Prints `message` behind the program's name, without what follows its first line.

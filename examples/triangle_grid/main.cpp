@@ -1,5 +1,5 @@
-// Triangles in the cells of a 3D grid, and segments that ask whether anything is in their way; checked
-// against every triangle.
+// Triangles in the cells of a 3D grid, and segments that ask whether anything is in their way;
+// checked against every triangle.
 #include <algorithm>
 #include <array>
 #include <cstdio>

@@ -17,8 +17,8 @@ struct Segment {
     glm::vec3 from, to;
 };
 
-/// What is known to break walks through grids and tests of triangles. Segment i of make_segments is of
-/// kind i % kinds.size().
+/// What is known to break walks through grids and tests of triangles. Segment i of make_segments is
+/// of kind i % kinds.size().
 inline constexpr std::array<std::string_view, 9> kinds{"between random points",
                                                        "along an axis",
                                                        "in the face between cells",

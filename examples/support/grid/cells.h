@@ -9,8 +9,8 @@
 // GRID_EXTENT_MAX cells come to 2^-11.
 #define GRID_WALK_ERROR 0.001953125f
 
-// Triangles are in the list of every cell that they come closer to than this, in cells: the errors of
-// the walk and of the triangle's own coordinates.
+// Triangles are in the list of every cell that they come closer to than this, in cells: the errors
+// of the walk and of the triangle's own coordinates.
 #define GRID_MARGIN 0.00390625f
 
 #endif

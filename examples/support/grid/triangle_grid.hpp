@@ -49,8 +49,8 @@ public:
     TriangleGrid(const cellist::Device& device, std::span<const GridTriangle> triangles,
                  const GridCells& cells, cellist::Storage storage = cellist::Storage::counted);
 
-    /// Puts every triangle into every cell that its bounding box touches. Blocks. Triangles that are
-    /// not finite are counted as rejected.
+    /// Puts every triangle into every cell that its bounding box touches. Blocks. Triangles that
+    /// are not finite are counted as rejected.
     cellist::BuildReport build();
 
     [[nodiscard]] const cellist::Lists<GridEntry>& entries() const { return entries_; }
