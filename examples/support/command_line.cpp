@@ -1,0 +1,63 @@
+#include "command_line.hpp"
+
+#include <charconv>
+#include <iostream>
+
+#include <CLI/CLI.hpp>
+
+#include "input_error.hpp"
+
+namespace support {
+
+std::optional<std::string> parse_command_line(CLI::App& app, int count,
+                                              const char* const* arguments) {
+    try {
+        app.parse(count, arguments);
+    } catch (const CLI::CallForHelp&) {
+        return app.help();
+    } catch (const CLI::ParseError& error) {
+        const std::string text = error.what();
+        throw InputError(text.substr(0, text.find('\n')) + " (see --help)");
+    }
+    return {};
+}
+
+void refuse(const std::string& option, const std::string& text, const std::string& expected) {
+    throw InputError(option + " " + text + ": expected " + expected);
+}
+
+std::uint64_t read_number(const std::string& option, const std::string& text, std::uint64_t least,
+                          std::uint64_t most) {
+    std::uint64_t number = 0;
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, number);
+    if (error != std::errc() || stop != end || number < least || number > most)
+        refuse(option, text,
+               "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+    return number;
+}
+
+cellist::Storage read_storage(const std::string& option, const std::string& text) {
+    for (const auto storage :
+         {cellist::Storage::linked, cellist::Storage::counted, cellist::Storage::fixed})
+        if (text == to_string(storage)) return storage;
+    refuse(option, text, "linked, counted or fixed");
+}
+
+std::string to_string(cellist::Storage storage) {
+    switch (storage) {
+        case cellist::Storage::linked:
+            return "linked";
+        case cellist::Storage::counted:
+            return "counted";
+        case cellist::Storage::fixed:
+            return "fixed";
+    }
+    return "unknown";
+}
+
+void print_error(const std::string& name, const std::string& message) {
+    std::cerr << name << ": " << message.substr(0, message.find('\n')) << '\n';
+}
+
+}  // namespace support

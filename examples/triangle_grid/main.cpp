@@ -1,0 +1,161 @@
+// Triangles in the cells of a 3D grid, and segments that ask whether anything is in their way;
+// checked against every triangle.
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include <cellist/cellist.hpp>
+
+#include "command_line.hpp"
+#include "grid/triangle_grid.hpp"
+#include "image.hpp"
+#include "mesh.hpp"
+#include "picture.hpp"
+#include "queries.hpp"
+#include "reference.hpp"
+#include "scene.hpp"
+#include "segments.hpp"
+#include "stopwatch.hpp"
+
+namespace {
+
+struct Options {
+    std::filesystem::path mesh;
+    std::filesystem::path out;
+    int grid = 0;
+    cellist::Storage storage = cellist::Storage::counted;
+    std::size_t segments = 0;
+    std::size_t check = 0;
+    std::uint32_t seed = 0;
+    std::string device;
+    std::string help;
+};
+
+Options parse_options(int count, const char* const* arguments) {
+    using support::read_number;
+    Options options;
+    std::string mesh, out, grid = "64", storage = "counted", segments = "1000000", check = "3000",
+                           seed = "1";
+    CLI::App app{"Puts the triangles of a mesh into a 3D grid and shoots segments at them.",
+                 "triangle_grid"};
+    app.add_option("mesh", mesh, "mesh that Assimp reads: OBJ, PLY, STL, ...; else a knot")
+        ->type_name("MESH");
+    app.add_option("--grid", grid, "cells along the longest side of the mesh")
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--storage", storage, "how the lists are stored")
+        ->type_name("linked|counted|fixed")
+        ->capture_default_str();
+    app.add_option("--segments", segments, "number of segments")
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--check", check, "segments that are held against every triangle on the CPU")
+        ->type_name("N|all")
+        ->capture_default_str();
+    app.add_option("--out", out, "draw the mesh with shadows and write the picture here")
+        ->type_name("FILE.png");
+    app.add_option("--seed", seed, "of the random numbers")->type_name("N")->capture_default_str();
+    app.add_option("--device", options.device,
+                   "index or part of the name of the device; else CELLIST_DEVICE, a GPU, or the "
+                   "first")
+        ->type_name("D");
+    if (const auto help = support::parse_command_line(app, count, arguments)) {
+        options.help = *help;
+        return options;
+    }
+    options.mesh = mesh;
+    options.out = out;
+    options.grid = static_cast<int>(read_number("--grid", grid, 1, GRID_EXTENT_MAX));
+    options.storage = support::read_storage("--storage", storage);
+    options.segments = read_number("--segments", segments, 0, 100'000'000);
+    options.check =
+        check == "all" ? options.segments : read_number("--check", check, 0, 0xFFFFFFFF);
+    options.check = std::min(options.check, options.segments);
+    options.seed = static_cast<std::uint32_t>(read_number("--seed", seed, 0, 0xFFFFFFFF));
+    return options;
+}
+
+// Compares evenly spread segments with the reference, prints the result, and returns whether all
+// are equal.
+bool check(const std::vector<triangle_grid::Segment>& segments, const std::vector<cl_uint>& hits,
+           const std::vector<grid::GridTriangle>& triangles, std::size_t sample) {
+    using triangle_grid::kinds;
+    std::array<std::size_t, kinds.size()> asked{}, blocked{}, different{};
+    // One more than a multiple of the kinds, so that every kind has its turn.
+    const std::size_t rounds = sample > 0 ? (segments.size() / sample - 1) / kinds.size() : 0;
+    const std::size_t step = rounds * kinds.size() + 1;
+    for (std::size_t n = 0; n < sample; ++n) {
+        const std::size_t i = n * step;
+        const bool expected = triangle_grid::meets_any(segments[i], triangles);
+        const std::size_t kind = i % kinds.size();
+        ++asked[kind];
+        if (expected) ++blocked[kind];
+        if (expected != (hits[i] != 0)) ++different[kind];
+    }
+    bool equal = true;
+    for (std::size_t kind = 0; kind < kinds.size() && sample > 0; ++kind) {
+        std::printf("check       %-29s %5zu of %5zu meet a triangle, %zu differ\n",
+                    std::string(kinds[kind]).c_str(), blocked[kind], asked[kind], different[kind]);
+        equal = equal && different[kind] == 0;
+    }
+    return equal;
+}
+
+bool run(const Options& options) {
+    if (!options.out.empty()) support::check_image_path(options.out);
+    const cellist::Device device = options.device.empty() ? cellist::Device::choose()
+                                                          : cellist::Device::choose(options.device);
+    support::Mesh mesh =
+        options.mesh.empty() ? triangle_grid::make_knot() : support::load_mesh(options.mesh);
+    support::fit_to_unit_sphere(mesh);
+    std::vector<grid::GridTriangle> triangles = triangle_grid::triangles_of(mesh);
+    const grid::GridCells cells = grid::cells_around(triangles, options.grid);
+    const std::vector<triangle_grid::Segment> segments =
+        triangle_grid::make_segments(options.segments, cells, triangles, options.seed);
+    triangle_grid::add_flat_triangles(triangles);
+
+    grid::TriangleGrid grid(device, triangles, cells, options.storage);
+    triangle_grid::Queries queries(device, grid, segments);
+    grid.build();  // lets the pool grow
+    queries.ask();
+    cellist::BuildReport report;
+    const double build_ms = support::measure_ms(device, [&] { report = grid.build(); });
+    const double ask_ms = support::measure_ms(device, [&] { queries.ask(); });
+    const std::vector<cl_uint> hits = queries.hits();
+
+    std::printf("device      %s\n", device.info().name.c_str());
+    std::printf("triangles   %zu, in %s cells, %s: %llu entries, %.1f MB\n", triangles.size(),
+                grid.entries().shape().to_string().c_str(),
+                support::to_string(options.storage).c_str(),
+                static_cast<unsigned long long>(report.stored),
+                static_cast<double>(grid.entries().pool_bytes()) * 1e-6);
+    std::printf("segments    %zu, %lld meet a triangle\n", segments.size(),
+                static_cast<long long>(std::count(hits.begin(), hits.end(), cl_uint{1})));
+    std::printf("time        build %.1f ms, segments %.1f ms (%.2f million/s)\n", build_ms, ask_ms,
+                static_cast<double>(segments.size()) / ask_ms * 1e-3);
+    if (!options.out.empty()) {
+        const double ms = triangle_grid::draw_picture(device, grid, mesh, {.out = options.out});
+        std::printf("picture     %s, %.0f ms\n", options.out.string().c_str(), ms);
+    }
+    const bool accounted =
+        report.dropped == 0 && report.rejected == 0 && report.stored >= triangles.size();
+    if (!accounted) std::printf("check       entries are MISSING\n");
+    return check(segments, hits, triangles, options.check) && accounted;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+    return support::run_program("triangle_grid", [&] {
+        const Options options = parse_options(count, arguments);
+        if (options.help.empty()) return run(options);
+        std::cout << options.help;
+        return true;
+    });
+}

@@ -1,0 +1,148 @@
+// Asking a grid gives the same answers as asking every triangle.
+#include "grid/triangle_grid.hpp"
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include <cellist/cellist.hpp>
+
+#include "queries.hpp"
+#include "reference.hpp"
+#include "scene.hpp"
+#include "segments.hpp"
+#include "support/catch.hpp"
+#include "support/device.hpp"
+
+namespace cellist::test {
+namespace {
+
+using grid::GridTriangle;
+using triangle_grid::Segment;
+using Triangles = std::vector<GridTriangle>;
+
+std::vector<cl_uint> ask(const Triangles& triangles, const grid::GridCells& cells,
+                         const std::vector<Segment>& segments, Storage storage) {
+    grid::TriangleGrid grid(device(), triangles, cells, storage);
+    grid.build();
+    REQUIRE(grid.entries().validate().ok());
+    triangle_grid::Queries queries(device(), grid, segments);
+    queries.ask();
+    return queries.hits();
+}
+
+void require_same(const Triangles& triangles, const grid::GridCells& cells,
+                  const std::vector<Segment>& segments) {
+    for (const Storage storage : {Storage::linked, Storage::counted}) {
+        const std::vector<cl_uint> hits = ask(triangles, cells, segments, storage);
+        std::size_t different = 0;
+        for (std::size_t i = 0; i < segments.size(); ++i)
+            if ((hits[i] != 0) != triangle_grid::meets_any(segments[i], triangles)) ++different;
+        CHECK(different == 0);
+    }
+}
+
+void require_same(const Triangles& triangles, int longest, std::size_t segments = 900) {
+    const grid::GridCells cells = grid::cells_around(triangles, longest);
+    require_same(triangles, cells, triangle_grid::make_segments(segments, cells, triangles, 3));
+}
+
+// A square in the plane z = height, in n x n squares of two triangles each.
+Triangles sheet(int n, float height) {
+    Triangles triangles;
+    const auto corner = [&](int x, int y) {
+        return glm::vec3(static_cast<float>(x), static_cast<float>(y), height);
+    };
+    for (int y = 0; y < n; ++y)
+        for (int x = 0; x < n; ++x) {
+            triangles.push_back({corner(x, y), corner(x + 1, y), corner(x + 1, y + 1)});
+            triangles.push_back({corner(x, y), corner(x + 1, y + 1), corner(x, y + 1)});
+        }
+    return triangles;
+}
+
+TEST_CASE("grids of every size") {
+    const Triangles knot = triangle_grid::triangles_of(triangle_grid::make_knot());
+    Triangles some;
+    for (std::size_t i = 0; i < knot.size(); i += 40) some.push_back(knot[i]);
+    triangle_grid::add_flat_triangles(some);
+    for (const int longest : {1, 2, 3, 31, 128}) require_same(some, longest);
+}
+
+TEST_CASE("triangles of all sizes, much larger and much smaller than a cell") {
+    std::mt19937 random(11);
+    std::normal_distribution<float> normal;
+    Triangles triangles;
+    for (int i = 0; i < 400; ++i) {
+        const float size = std::pow(10.0F, static_cast<float>(i % 8) - 6.0F);
+        const auto point = [&] {
+            return glm::vec3(normal(random), normal(random), normal(random));
+        };
+        const glm::vec3 centre = point();
+        triangles.push_back(
+            {centre + size * point(), centre + size * point(), centre + size * point()});
+    }
+    for (const int longest : {1, 40}) require_same(triangles, longest);
+}
+
+TEST_CASE("nothing passes between triangles that share edges and corners") {
+    const int n = 16;
+    const Triangles triangles = sheet(n, 3);
+    const grid::GridCells cells = grid::cells_around(triangles, n);
+    std::vector<Segment> segments;
+    for (int i = 0; i <= 2 * n; ++i)
+        for (int j = 0; j <= 2 * n; ++j) {
+            const glm::vec3 target(0.5F * static_cast<float>(i), 0.5F * static_cast<float>(j), 3);
+            for (const glm::vec3& along :
+                 {glm::vec3(0, 0, 1), glm::vec3(0.25F, 0, 1), glm::vec3(0.5F, -0.75F, 2),
+                  glm::vec3(1000, -3000, 0.5F), glm::vec3(0, 0, 1e6F)})
+                segments.push_back({target - along, target + along});
+        }
+    for (const cl_uint hit : ask(triangles, cells, segments, Storage::counted)) REQUIRE(hit == 1);
+    require_same(triangles, cells, segments);
+}
+
+TEST_CASE("segments that end at a triangle, in its plane, or before it") {
+    const Triangles triangles = sheet(1, 0);
+    const auto hits = [&](glm::vec3 from, glm::vec3 to) {
+        return ask(triangles, grid::cells_around(triangles, 4), {{from, to}}, Storage::linked)[0];
+    };
+    CHECK(hits({0.25F, 0.5F, 1}, {0.25F, 0.5F, 0}) == 1);
+    CHECK(hits({0.25F, 0.5F, 0}, {0.25F, 0.5F, -1}) == 1);
+    CHECK(hits({0.25F, 0.5F, 1}, {0.25F, 0.5F, 1e-30F}) == 0);
+    CHECK(hits({1, 1, 1}, {1, 1, 0}) == 1);
+    CHECK(hits({-1, 0.5F, 0}, {2, 0.5F, 0}) == 0);
+    CHECK(hits({0.5F, 0.25F, 0}, {0.5F, 0.25F, 0}) == 0);
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    CHECK(hits({nan, 0.5F, 1}, {0.25F, 0.5F, -1}) == 0);
+    CHECK(hits({0.25F, 0.5F, infinity}, {0.25F, 0.5F, -1}) == 0);
+    CHECK(hits({0.25F, 0.5F, 3e38F}, {0.25F, 0.5F, -3e38F}) == 1);
+}
+
+TEST_CASE("no triangle, one point, one plane, and triangles that are not finite") {
+    require_same({}, 8, 90);
+    require_same({{glm::vec3(2), glm::vec3(2), glm::vec3(2)}}, 8, 90);
+    require_same(sheet(5, 1e6F), 64);
+    Triangles triangles = sheet(2, 0);
+    triangles.push_back({glm::vec3(std::numeric_limits<float>::quiet_NaN()), {}, {}});
+    triangles.push_back({{}, glm::vec3(std::numeric_limits<float>::infinity(), 0, 0), {}});
+    grid::TriangleGrid grid(device(), triangles, grid::cells_around(triangles, 8));
+    CHECK(grid.build().rejected == 2);
+}
+
+TEST_CASE("meshes far from the origin, and very large or small") {
+    for (const float scale : {1e-18F, 1e-6F, 1e12F, 1e30F})
+        for (const float shift : {0.0F, 1e4F}) {
+            Triangles triangles = sheet(6, 0.5F);
+            for (GridTriangle& t : triangles)
+                for (glm::vec3* corner : {&t.a, &t.b, &t.c})
+                    *corner = scale * (*corner + glm::vec3(shift));
+            INFO(scale << ", " << shift);
+            require_same(triangles, 13);
+        }
+}
+
+}  // namespace
+}  // namespace cellist::test
