@@ -2,6 +2,7 @@
 // containers.
 #include "support/errors.hpp"
 #include "support/inserts.hpp"
+#include "support/storages.hpp"
 
 namespace cellist::test {
 namespace {
@@ -86,8 +87,9 @@ kernel void copy(CELLIST_LISTS(Item, from), CELLIST_LISTS(Item, to))
 )";
 
 TEST_CASE("a work-item inserts any number of records, in divergent loops") {
+    CELLIST_EACH_STORAGE(storage);
     constexpr cl_uint count = 3000;
-    Lists<Item> lists(device(), {101}, {.capacity_nodes = 5});
+    Lists<Item> lists(device(), {101}, {.storage = storage, .capacity_nodes = 5});
     Kernel kernel(device(), source, "loops", lists);
     Oracle<Item> oracle;
     for (cl_uint i = 0; i < count; ++i)
@@ -103,7 +105,8 @@ TEST_CASE("a work-item inserts any number of records, in divergent loops") {
 }
 
 TEST_CASE("kernels insert from ranges of two dimensions") {
-    Lists<Item> lists(device(), {37, 21});
+    CELLIST_EACH_STORAGE(storage);
+    Lists<Item> lists(device(), {37, 21}, {.storage = storage});
     Kernel kernel(device(), source, "plane", lists);
     require_complete(lists.build(kernel, {40, 24}), 37 * 21, 40 * 24 - 37 * 21);
     const HostLists<Item> host = lists.download();
@@ -116,7 +119,8 @@ TEST_CASE("kernels insert from ranges of two dimensions") {
 }
 
 TEST_CASE("kernels insert from ranges of three dimensions") {
-    Lists<Item> lists(device(), {11, 7, 5});
+    CELLIST_EACH_STORAGE(storage);
+    Lists<Item> lists(device(), {11, 7, 5}, {.storage = storage});
     Kernel kernel(device(), source, "space", lists);
     require_complete(lists.build(kernel, {12, 8, 6}), 11 * 7 * 5, 12 * 8 * 6 - 11 * 7 * 5);
     const HostLists<Item> host = lists.download();
@@ -131,7 +135,11 @@ TEST_CASE("kernels insert from ranges of three dimensions") {
 }
 
 TEST_CASE("an insert returns its node, which no other insert has") {
-    Lists<Item> lists(device(), {1000}, {.overflow = Overflow::drop, .capacity_nodes = 700});
+    CELLIST_EACH_STORAGE(storage);
+    Lists<Item> lists(
+        device(), {1000},
+        {.storage = storage, .overflow = Overflow::drop, .capacity_nodes = 700, .slots = 1});
+    const auto capacity = static_cast<cl_uint>(lists.capacity_nodes());
     Kernel kernel(device(), source, "nodes", lists);
     const Buffer<cl_uint> device_nodes(device(), 1200);
     const BuildReport report = lists.build(kernel, 1200, device_nodes);
@@ -139,11 +147,12 @@ TEST_CASE("an insert returns its node, which no other insert has") {
     for (std::size_t i = 1000; i < nodes.size(); ++i) REQUIRE(nodes[i] == 0xFFFFFFFFu);
     std::erase(nodes, 0xFFFFFFFFu);
     REQUIRE(nodes.size() == report.stored);
-    REQUIRE(report.stored == 700);
+    REQUIRE(capacity == (storage == Storage::fixed ? 1000 : 700));
+    REQUIRE(report.stored == capacity);
     std::sort(nodes.begin(), nodes.end());
-    for (cl_uint i = 0; i < 700; ++i) REQUIRE(nodes[i] == i);
+    for (cl_uint i = 0; i < capacity; ++i) REQUIRE(nodes[i] == i);
     const HostLists<Item> host = lists.download();
-    for (const Item& item : host.records()) REQUIRE(static_cast<cl_uint>(item.key) < 700u);
+    for (const Item& item : host.records()) REQUIRE(static_cast<cl_uint>(item.key) < capacity);
 }
 
 TEST_CASE("one kernel inserts into containers of different types") {
@@ -194,8 +203,12 @@ TEST_CASE("one kernel inserts into containers of different types") {
 
 TEST_CASE("a kernel reads one container and inserts into another of the same type") {
     CELLIST_RANDOM(random, 10u);
-    Lists<Item> from(device(), {40});
-    Lists<Item> to(device(), {40}, {.capacity_nodes = 1});
+    const auto [storage_from, storage_to] = GENERATE(
+        std::pair(Storage::linked, Storage::linked), std::pair(Storage::linked, Storage::counted),
+        std::pair(Storage::counted, Storage::fixed), std::pair(Storage::fixed, Storage::linked));
+    INFO(name_of(storage_from) << " to " << name_of(storage_to));
+    Lists<Item> from(device(), {40}, {.storage = storage_from});
+    Lists<Item> to(device(), {40}, {.storage = storage_to, .capacity_nodes = 1});
     const Lists<Spark> sparks(device(), {1});
     const Inserts<Item> inserts = random_inserts(4096, 40, random);
     Inserter(from).build(from, inserts);
