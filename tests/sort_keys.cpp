@@ -94,7 +94,6 @@ struct Nested {
 CELLIST_STRUCT(Nested, item, pair, bytes);
 
 TEST_CASE("ties are ordered by the scalars of vectors, arrays and nested structs") {
-    CELLIST_EACH_STORAGE(storage);
     CELLIST_RANDOM(random, 81u);
     Inserts<Nested> inserts;
     for (int i = 0; i < 3000; ++i) {
@@ -106,7 +105,7 @@ TEST_CASE("ties are ordered by the scalars of vectors, arrays and nested structs
             for (cl_uchar& byte : row) byte = static_cast<cl_uchar>(below(random, 3) * 100);
         inserts.add(below(random, 3), nested);
     }
-    Lists<Nested> lists(device(), {3}, {.storage = storage});
+    Lists<Nested> lists(device(), {3});
     Inserter(lists).build(lists, inserts);
     lists.sort_by("record.bytes[1][0]");
     const auto values = [](const Nested& nested) {
