@@ -15,13 +15,16 @@ kernel void cellist_validate_contiguous(CELLIST_LISTS(CELLIST_RECORD, lists),
     const uint end = lists_heads[(ulong)cell + 1];
     const uint inserted = lists_heads[(ulong)lists_view.cells + 1 + cell];
     // The first list begins with the pool.
-    const int broken = begin > end || end > lists_view.capacity_nodes || (cell == 0 && begin != 0);
-    // A list counts on past its end: those records were dropped.
-    const uint unfilled = !broken && inserted < end - begin ? end - begin - inserted : 0;
-    if (broken)
+    if (begin > end || end > lists_view.capacity_nodes || (cell == 0 && begin != 0)) {
         atomic_inc(&findings->broken);
-    else if (end > begin)
-        atomic_add(&findings->nodes, end - begin);
-    if (unfilled) atomic_add(&findings->unfilled, unfilled);
-    if (broken || unfilled) atomic_min(&findings->first_bad_cell, cell);
+        atomic_min(&findings->first_bad_cell, cell);
+        return;
+    }
+    const uint length = end - begin;
+    if (length) atomic_add(&findings->nodes, length);
+    // A list counts on past its end: those records were dropped.
+    if (inserted < length) {
+        atomic_add(&findings->unfilled, length - inserted);
+        atomic_min(&findings->first_bad_cell, cell);
+    }
 }

@@ -154,10 +154,8 @@ std::unique_ptr<ListStorage> make_storage(std::shared_ptr<DeviceState> device,
                                           const Definitions& definitions, const Shape& shape,
                                           const ListsOptions& options) {
     const bool fixed = options.storage == Storage::fixed;
-    if (fixed && options.capacity_nodes)
-        throw Error("capacity_nodes has no meaning in Storage::fixed: set slots");
-    if (!fixed && options.slots) throw Error("slots has a meaning in Storage::fixed only");
-    if (options.overflow != Overflow::grow && !options.capacity_nodes && !options.slots)
+    if (options.overflow != Overflow::grow &&
+        !(fixed ? options.slots.has_value() : options.capacity_nodes.has_value()))
         throw Error(std::string("Overflow::stop and Overflow::drop need ") +
                     (fixed ? "slots in Storage::fixed" : "capacity_nodes"));
     switch (options.storage) {

@@ -60,16 +60,16 @@ bool CountedStorage::end_pass(BuildReport& report) {
 void CountedStorage::place_lists(BuildReport& report) {
     const CellScan::Sums sums = scan_.sums(heads_.cl(), CELLIST_NONE);
     demand_ = sums.total + counters_.dropped;
-    kept_ = std::min(demand_, capacity_nodes_);
+    kept_ = std::min(sums.total, capacity_nodes_);
     update(report, counters_, kept_);
     report.dropped = demand_ - kept_;
     report.attempted = demand_ + counters_.rejected;
-    if (counters_.dropped > 0)
-        throw OverflowError("a list of more than " + std::to_string(CELLIST_CELL_COUNT_MAX) +
-                                " records is over the limit of Storage::counted",
-                            report);
     if (kept_ < demand_ && options_.overflow != Overflow::drop) {
         require(demand_, report);
+        if (counters_.dropped > 0)
+            throw OverflowError("a list of more than " + std::to_string(CELLIST_CELL_COUNT_MAX) +
+                                    " records is over the limit of Storage::counted",
+                                report);
         allocate_pool(demand_);
         kept_ = demand_;
     }
@@ -80,12 +80,12 @@ void CountedStorage::check_repeats(const Counters& filled) {
     const std::uint64_t unfilled = validate().lost_nodes;
     if (unfilled == 0 && filled.dropped == demand_ - kept_ && filled.rejected == counters_.rejected)
         return;
-    throw Error("the kernel inserted " +
-                std::to_string(kept_ - unfilled + filled.dropped + filled.rejected) +
-                " records when it filled the lists, and " +
-                std::to_string(demand_ + counters_.rejected) +
-                " or others when it counted them: it must insert the same number into every cell "
-                "both times, or use Storage::linked");
+    throw Error(
+        "the kernel inserted " +
+        std::to_string(kept_ - unfilled + filled.dropped + filled.rejected) +
+        " records when it filled the lists, and " + std::to_string(demand_ + counters_.rejected) +
+        " or others when it counted them: it must insert the same records every time, or use "
+        "Storage::linked");
 }
 
 Validation CountedStorage::validate() {
@@ -94,9 +94,17 @@ Validation CountedStorage::validate() {
     Arguments arguments;
     add_to(arguments);
     const cellist_findings found = findings(*validate_, arguments);
-    // Lists of sound length that do not add up to the build's records have a wrong end.
+    // Sound lists that do not add up to what was stored have a wrong end; counts that do not add up to
+    // what was stored and dropped are wrong.
     const std::uint64_t missing = kept_ > found.nodes ? kept_ - found.nodes : found.nodes - kept_;
-    return {found.broken, 0, found.unfilled + (found.broken == 0 ? missing : 0), bad_cell(found)};
+    const CellScan::Sums inserted = scan_.sums(heads_.cl(), CELLIST_NONE);
+    const std::uint64_t counted = inserted.total + found.unfilled;
+    const std::uint64_t expected = kept_ + read_counters().dropped;
+    // Counts end at their limit, where what was dropped goes on.
+    const bool wrong_counts =
+        inserted.longest < CELLIST_CELL_COUNT_MAX ? counted != expected : counted > expected;
+    return {found.broken == 0 && wrong_counts ? std::uint64_t{1} : found.broken, 0,
+            found.unfilled + (found.broken == 0 ? missing : 0), bad_cell(found)};
 }
 
 void CountedStorage::recover(bool without_pool) {

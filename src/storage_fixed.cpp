@@ -10,7 +10,8 @@ FixedStorage::FixedStorage(std::shared_ptr<DeviceState> device, const Definition
     : ListStorage(std::move(device), definitions, shape, options, CELLIST_FIXED,
                   definitions.records.back().size, shape.cells()),
       scan_(device_, shape.cells(), 0) {
-    const std::uint64_t slots = options.slots.value_or(4);
+    std::uint64_t slots = options.slots.value_or(4);
+    if (!options.slots && refusal(nodes_with(slots))) slots = 0;
     if (const auto reason = refusal(nodes_with(slots))) throw Error(*reason);
     set_slots(slots);
     clear();
@@ -65,10 +66,13 @@ Validation FixedStorage::validate() {
     // The counts are all that says which slots are in use: they must add up to what was stored and
     // to what was dropped.
     const std::uint64_t stored = scan_.sums(heads_.cl(), slots_).total;
-    const std::uint64_t demand = scan_.sums(heads_.cl(), CELLIST_NONE).total;
+    const CellScan::Sums demand = scan_.sums(heads_.cl(), CELLIST_NONE);
     const std::uint64_t lost = stored > stored_ ? stored - stored_ : stored_ - stored;
-    const bool demand_is_right = demand - stored == read_counters().dropped;
-    return {demand_is_right ? std::uint64_t{0} : std::uint64_t{1}, 0, lost, {}};
+    const std::uint64_t over = demand.total - stored;
+    const std::uint64_t dropped = read_counters().dropped;
+    // Counts end at their limit, where what was dropped goes on.
+    const bool sound = demand.longest < CELLIST_CELL_COUNT_MAX ? over == dropped : over <= dropped;
+    return {sound ? std::uint64_t{0} : std::uint64_t{1}, 0, lost, {}};
 }
 
 }  // namespace cellist::detail

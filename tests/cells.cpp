@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "support/inserts.hpp"
+#include "support/storages.hpp"
 
 namespace cellist::test {
 namespace {
@@ -42,7 +43,8 @@ std::optional<std::uint64_t> index_of(C coordinate, std::uint64_t extent) {
 }
 
 template <class C>
-void check_cells(const std::string& type, const std::vector<C>& interesting) {
+void check_cells(const std::string& type, const std::vector<C>& interesting,
+                 Storage storage = Storage::linked) {
     INFO("coordinates of type " << type);
     CELLIST_RANDOM(random, 100u);
     const Shape shape{5, 4, 3, 2};
@@ -63,7 +65,7 @@ void check_cells(const std::string& type, const std::vector<C>& interesting) {
     for (const auto& point : points)
         coordinates.insert(coordinates.end(), point.begin(), point.end());
 
-    Lists<Item> lists(device(), shape);
+    Lists<Item> lists(device(), shape, {.storage = storage});
     Kernel kernel(device(), cell_source(type), "cells_of", lists);
     const Buffer<C> at(device(), coordinates);
     const Buffer<cl_uint> device_cells(device(), coordinates.size());
@@ -113,7 +115,10 @@ std::vector<C> integers() {
     return values;
 }
 
-TEST_CASE("int coordinates") { check_cells<cl_int>("int", integers<cl_int>()); }
+TEST_CASE("int coordinates") {
+    CELLIST_EACH_STORAGE(storage);
+    check_cells<cl_int>("int", integers<cl_int>(), storage);
+}
 TEST_CASE("uint coordinates") {
     std::vector<cl_uint> values = integers<cl_uint>();
     values.push_back(0x80000000u);
@@ -200,7 +205,8 @@ kernel void largest(CELLIST_LISTS(Item, small), global uint* cells)
 }
 
 TEST_CASE("cell indices of any integer type are checked") {
-    Lists<Item> lists(device(), {10});
+    CELLIST_EACH_STORAGE(storage);
+    Lists<Item> lists(device(), {10}, {.storage = storage});
     Kernel kernel(device(), R"(
 #include <cellist/lists.clh>
 kernel void indices(CELLIST_LISTS(Item, lists), global uint* lengths)
@@ -238,8 +244,9 @@ kernel void indices(CELLIST_LISTS(Item, lists), global uint* lengths)
 }
 
 TEST_CASE("walking a cell outside of the shape visits nothing") {
+    CELLIST_EACH_STORAGE(storage);
     CELLIST_RANDOM(random, 101u);
-    Lists<Item> lists(device(), {10});
+    Lists<Item> lists(device(), {10}, {.storage = storage});
     Inserter(lists).build(lists, random_inserts(144, 10, random));
     Kernel kernel(device(), R"(
 #include <cellist/lists.clh>

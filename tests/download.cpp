@@ -3,16 +3,18 @@
 
 #include "support/errors.hpp"
 #include "support/inserts.hpp"
+#include "support/storages.hpp"
 
 namespace cellist::test {
 namespace {
 
 TEST_CASE("positions, indices and offsets address the same lists") {
+    CELLIST_EACH_STORAGE(storage);
     CELLIST_RANDOM(random, 130u);
     const Inserts<Item> inserts = random_inserts(4096, 4 * 3 * 5, random);
     std::optional<HostLists<Item>> host;
     {
-        Lists<Item> lists(device(), {4, 3, 5});
+        Lists<Item> lists(device(), {4, 3, 5}, {.storage = storage});
         Inserter(lists).build(lists, inserts);
         host = lists.download();
     }
@@ -64,7 +66,8 @@ TEST_CASE("positions outside of the shape are errors") {
 }
 
 TEST_CASE("a download without cells has no lists") {
-    const HostLists<Item> host = Lists<Item>(device(), {0, 7}).download();
+    CELLIST_EACH_STORAGE(storage);
+    const HostLists<Item> host = Lists<Item>(device(), {0, 7}, {.storage = storage}).download();
     REQUIRE(host.cells() == 0);
     REQUIRE(host.records().empty());
     REQUIRE(host.offsets() == std::vector<std::uint64_t>{0});

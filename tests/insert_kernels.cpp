@@ -2,6 +2,7 @@
 // containers.
 #include "support/errors.hpp"
 #include "support/inserts.hpp"
+#include "support/storages.hpp"
 
 namespace cellist::test {
 namespace {
@@ -85,8 +86,9 @@ kernel void copy(CELLIST_LISTS(Item, from), CELLIST_LISTS(Item, to))
 )";
 
 TEST_CASE("a work-item inserts any number of records, in divergent loops") {
+    CELLIST_EACH_STORAGE(storage);
     constexpr cl_uint count = 3000;
-    Lists<Item> lists(device(), {101}, {.capacity_nodes = 5});
+    Lists<Item> lists(device(), {101}, {.storage = storage, .capacity_nodes = 5});
     Kernel kernel(device(), source, "loops", lists);
     Oracle<Item> oracle;
     for (cl_uint i = 0; i < count; ++i)
@@ -102,7 +104,8 @@ TEST_CASE("a work-item inserts any number of records, in divergent loops") {
 }
 
 TEST_CASE("kernels insert from ranges of two dimensions") {
-    Lists<Item> lists(device(), {37, 21});
+    CELLIST_EACH_STORAGE(storage);
+    Lists<Item> lists(device(), {37, 21}, {.storage = storage});
     Kernel kernel(device(), source, "plane", lists);
     require_complete(lists.build(kernel, {40, 24}), 37 * 21, 40 * 24 - 37 * 21);
     const HostLists<Item> host = lists.download();
@@ -115,7 +118,8 @@ TEST_CASE("kernels insert from ranges of two dimensions") {
 }
 
 TEST_CASE("kernels insert from ranges of three dimensions") {
-    Lists<Item> lists(device(), {11, 7, 5});
+    CELLIST_EACH_STORAGE(storage);
+    Lists<Item> lists(device(), {11, 7, 5}, {.storage = storage});
     Kernel kernel(device(), source, "space", lists);
     require_complete(lists.build(kernel, {12, 8, 6}), 11 * 7 * 5, 12 * 8 * 6 - 11 * 7 * 5);
     const HostLists<Item> host = lists.download();
@@ -130,7 +134,10 @@ TEST_CASE("kernels insert from ranges of three dimensions") {
 }
 
 TEST_CASE("an insert says whether the record was taken") {
-    Lists<Item> lists(device(), {1000}, {.overflow = Overflow::drop, .capacity_nodes = 700});
+    CELLIST_EACH_STORAGE(storage);
+    Lists<Item> lists(
+        device(), {1000},
+        {.storage = storage, .overflow = Overflow::drop, .capacity_nodes = 700, .slots = 1});
     Kernel kernel(device(), source, "taken", lists);
     const Buffer<cl_uint> device_taken(device(), 1200);
     const BuildReport report = lists.build(kernel, 1200, device_taken);
@@ -138,7 +145,7 @@ TEST_CASE("an insert says whether the record was taken") {
     const HostLists<Item> host = lists.download();
     for (std::size_t i = 0; i < taken.size(); ++i)
         REQUIRE(taken[i] == (i < 1000 && !host.cell(i).empty() ? 1u : 0u));
-    REQUIRE(report.stored == 700);
+    REQUIRE(report.stored == (storage == Storage::fixed ? 1000 : 700));
 }
 
 TEST_CASE("one kernel inserts into containers of different types") {
@@ -189,8 +196,12 @@ TEST_CASE("one kernel inserts into containers of different types") {
 
 TEST_CASE("a kernel reads one container and inserts into another of the same type") {
     CELLIST_RANDOM(random, 10u);
-    Lists<Item> from(device(), {40});
-    Lists<Item> to(device(), {40}, {.capacity_nodes = 1});
+    const auto [storage_from, storage_to] = GENERATE(
+        std::pair(Storage::linked, Storage::linked), std::pair(Storage::linked, Storage::counted),
+        std::pair(Storage::counted, Storage::fixed), std::pair(Storage::fixed, Storage::linked));
+    INFO(name_of(storage_from) << " to " << name_of(storage_to));
+    Lists<Item> from(device(), {40}, {.storage = storage_from});
+    Lists<Item> to(device(), {40}, {.storage = storage_to, .capacity_nodes = 1});
     const Lists<Spark> sparks(device(), {1});
     const Inserts<Item> inserts = random_inserts(4096, 40, random);
     Inserter(from).build(from, inserts);

@@ -1,5 +1,6 @@
 // Records of any size and alignment come back byte for byte.
 #include "support/inserts.hpp"
+#include "support/storages.hpp"
 
 namespace cellist::test {
 namespace {
@@ -51,7 +52,9 @@ struct Hundred {
 CELLIST_STRUCT(Hundred, inner, rest);
 
 template <class T>
-void round_trip(std::size_t expected_bytes, std::size_t expected_node_bytes) {
+void round_trip(std::size_t expected_bytes, std::size_t expected_node_bytes,
+                Storage storage = Storage::linked) {
+    INFO("storage " << name_of(storage));
     REQUIRE(sizeof(T) == expected_bytes);
     CELLIST_RANDOM(random, 20u + static_cast<unsigned>(sizeof(T)));
     for (const std::size_t count : {0u, 1u, 144u, 5000u}) {
@@ -64,9 +67,10 @@ void round_trip(std::size_t expected_bytes, std::size_t expected_node_bytes) {
                 bytes[at] = static_cast<unsigned char>(below(random, 256));
             inserts.add(below(random, 31), record);
         }
-        Lists<T> lists(device(), {29}, {.capacity_nodes = 100});
-        const std::uint64_t without_nodes = lists.pool_bytes() - 100 * expected_node_bytes;
-        REQUIRE(without_nodes < 29 * 4 + 1024);
+        Lists<T> lists(device(), {29}, {.storage = storage, .capacity_nodes = 100});
+        const std::uint64_t without_nodes =
+            lists.pool_bytes() - lists.capacity_nodes() * expected_node_bytes;
+        REQUIRE(without_nodes < 2 * 29 * 4 + 1024);
         const Oracle<T> oracle = oracle_of(inserts, 29);
         require_complete(Inserter(lists).build(lists, inserts), oracle.size(),
                          count - oracle.size());
@@ -85,6 +89,13 @@ TEST_CASE("a record of 20 bytes round-trips") { round_trip<Twenty>(20, 24); }
 TEST_CASE("a record of 28 bytes round-trips") { round_trip<TwentyEight>(28, 32); }
 TEST_CASE("a record of 64 bytes round-trips") { round_trip<SixtyFour>(64, 128); }
 TEST_CASE("a record of 100 bytes round-trips") { round_trip<Hundred>(100, 104); }
+
+TEST_CASE("records of odd sizes round-trip without links") {
+    const Storage storage = GENERATE(Storage::counted, Storage::fixed);
+    round_trip<Three>(3, 3, storage);
+    round_trip<Twelve>(12, 12, storage);
+    round_trip<Hundred>(100, 100, storage);
+}
 
 }  // namespace
 }  // namespace cellist::test

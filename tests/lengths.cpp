@@ -1,12 +1,13 @@
 // lengths() describes the lists as the oracle does.
 #include "support/inserts.hpp"
+#include "support/storages.hpp"
 
 namespace cellist::test {
 namespace {
 
-void check(const Shape& shape, const Inserts<Item>& inserts) {
+void check(Storage storage, const Shape& shape, const Inserts<Item>& inserts) {
     INFO("shape " << shape.to_string() << ", " << inserts.size() << " inserts");
-    Lists<Item> lists(device(), shape);
+    Lists<Item> lists(device(), shape, {.storage = storage});
     Inserter(lists).build(lists, inserts);
     const Oracle<Item> oracle = oracle_of(inserts, shape.cells());
     std::map<std::uint64_t, std::uint64_t> cells_of_length;
@@ -23,15 +24,16 @@ void check(const Shape& shape, const Inserts<Item>& inserts) {
 }
 
 TEST_CASE("the histogram counts the cells of every length") {
+    CELLIST_EACH_STORAGE(storage);
     CELLIST_RANDOM(random, 120u);
     for (const std::size_t count : {0u, 1u, 7u, 93u, 144u, 4096u}) {
-        check({13, 11}, random_inserts(count, 150, random));
-        check({1}, random_inserts(count, 1, random));
-        check({0}, random_inserts(count, 1, random));
+        check(storage, {13, 11}, random_inserts(count, 150, random));
+        check(storage, {1}, random_inserts(count, 1, random));
+        check(storage, {0}, random_inserts(count, 1, random));
     }
     Inserts<Item> one_long = random_inserts(4096, 1, random);
     for (cl_uint& cell : one_long.cells) cell = 42;
-    check({13, 11}, one_long);
+    check(storage, {13, 11}, one_long);
 }
 
 }  // namespace

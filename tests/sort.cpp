@@ -5,6 +5,7 @@
 
 #include "support/errors.hpp"
 #include "support/inserts.hpp"
+#include "support/storages.hpp"
 
 namespace cellist::test {
 namespace {
@@ -28,6 +29,7 @@ void require_sorted(const HostLists<T>& found, const Oracle<T>& oracle, auto bef
 }
 
 TEST_CASE("lists of every length are sorted") {
+    CELLIST_EACH_STORAGE(storage);
     CELLIST_RANDOM(random, 70u);
     const std::vector<cl_uint> lengths{0, 1, 2, 3, 4, 5, 7, 8, 31, 32, 33, 1000, 0, 1023, 1024};
     Inserts<Item> inserts;
@@ -36,7 +38,7 @@ TEST_CASE("lists of every length are sorted") {
             inserts.add(cell, {static_cast<cl_float>(below(random, 500)) - 250.0f,
                                static_cast<cl_uint>(inserts.size())});
     inserts.shuffle(random);
-    Lists<Item> lists(device(), {lengths.size()});
+    Lists<Item> lists(device(), {lengths.size()}, {.storage = storage});
     Inserter(lists).build(lists, inserts);
     const Oracle<Item> oracle = oracle_of(inserts, lengths.size());
 
@@ -55,10 +57,11 @@ TEST_CASE("lists of every length are sorted") {
 }
 
 TEST_CASE("a list of 100,000 nodes is sorted") {
+    CELLIST_EACH_STORAGE(storage);
     CELLIST_RANDOM(random, 71u);
     Inserts<Item> inserts = random_inserts(100'000, 1, random);
     for (cl_uint& cell : inserts.cells) cell = 2;
-    Lists<Item> lists(device(), {5});
+    Lists<Item> lists(device(), {5}, {.storage = storage});
     Inserter(lists).build(lists, inserts);
     lists.sort(&Item::key);
     require_sound(lists, 100'000);
@@ -66,11 +69,12 @@ TEST_CASE("a list of 100,000 nodes is sorted") {
 }
 
 TEST_CASE("lists that are sorted already, upwards or downwards, are sorted") {
+    CELLIST_EACH_STORAGE(storage);
     for (const bool upwards : {true, false}) {
         Inserts<Item> inserts;
         for (cl_uint i = 0; i < 3000; ++i)
             inserts.add(0, {static_cast<cl_float>(upwards ? i : 3000 - i), i});
-        Lists<Item> lists(device(), {1});
+        Lists<Item> lists(device(), {1}, {.storage = storage});
         Inserter(lists).build(lists, inserts);
         lists.sort(&Item::key);
         require_sorted(lists.download(), oracle_of(inserts, 1), by_key);
@@ -122,8 +126,9 @@ TEST_CASE("an expression that does not compile ends in an error with the compile
 }
 
 TEST_CASE("sorted lists are built anew") {
+    CELLIST_EACH_STORAGE(storage);
     CELLIST_RANDOM(random, 74u);
-    Lists<Item> lists(device(), {10}, {.capacity_nodes = 100});
+    Lists<Item> lists(device(), {10}, {.storage = storage, .capacity_nodes = 100});
     Inserter inserter(lists);
     for (const std::size_t count : {93u, 4096u, 7u}) {
         const Inserts<Item> inserts = random_inserts(count, 10, random);
@@ -135,8 +140,9 @@ TEST_CASE("sorted lists are built anew") {
 }
 
 TEST_CASE("empty containers are sorted") {
+    CELLIST_EACH_STORAGE(storage);
     for (const Shape& shape : {Shape{0}, Shape{1}, Shape{100, 3}}) {
-        Lists<Item> lists(device(), shape);
+        Lists<Item> lists(device(), shape, {.storage = storage});
         lists.sort(&Item::key);
         require_sound(lists, 0);
     }

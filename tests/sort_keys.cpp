@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "support/inserts.hpp"
+#include "support/storages.hpp"
 
 namespace cellist::test {
 namespace {
@@ -150,6 +151,7 @@ void require_float_order(std::span<const T> list) {
 }
 
 TEST_CASE("floats are ordered from -inf to +inf, -0 before +0, NaN last") {
+    CELLIST_EACH_STORAGE(storage);
     CELLIST_RANDOM(random, 82u);
     const std::vector<cl_uint> bits{
         0x00000000, 0x80000000, 0x00000001, 0x80000001, 0x00000002, 0x007FFFFF, 0x807FFFFF,
@@ -160,7 +162,7 @@ TEST_CASE("floats are ordered from -inf to +inf, -0 before +0, NaN last") {
         inserts.add(
             i % 2,
             {std::bit_cast<cl_float>(bits[below(random, static_cast<cl_uint>(bits.size()))]), i});
-    Lists<Item> lists(device(), {2});
+    Lists<Item> lists(device(), {2}, {.storage = storage});
     Inserter(lists).build(lists, inserts);
     lists.sort(&Item::key);
     const HostLists<Item> found = lists.download();
