@@ -124,19 +124,16 @@ public:
                          difference("passes", 2, report.passes), lists_state(*lists_)});
     }
 
-    std::string sorts() {
-        lists().sort(&SelftestRecord::key);
-        const HostLists<SelftestRecord> host = lists().download();
-        for (std::uint64_t cell = 0; cell < host.cells(); ++cell) {
-            std::vector<Record> found;
-            for (const SelftestRecord& record : host.cell(cell))
-                found.emplace_back(record.key, record.id);
-            const auto expected = oracle_.find(cell);
-            const std::string text = difference(
-                cell, expected == oracle_.end() ? std::vector<Record>() : expected->second, found);
-            if (!text.empty()) return text;
+    std::string sorts() { return sorted_difference(lists()); }
+
+    std::string fills_other_storages() {
+        for (const Storage storage : {Storage::counted, Storage::fixed}) {
+            Lists<SelftestRecord> other(device_, {width, height}, {.storage = storage});
+            build(other);
+            if (const std::string text = sorted_difference(other); !text.empty())
+                return (storage == Storage::counted ? "counted, " : "fixed, ") + text;
         }
-        return lists_state(lists());
+        return {};
     }
 
     std::string takes_the_nearest() {
@@ -172,6 +169,22 @@ public:
     }
 
 private:
+    /// Sorts the lists and compares them with the CPU's.
+    std::string sorted_difference(Lists<SelftestRecord>& lists) const {
+        lists.sort(&SelftestRecord::key);
+        const HostLists<SelftestRecord> host = lists.download();
+        for (std::uint64_t cell = 0; cell < host.cells(); ++cell) {
+            std::vector<Record> found;
+            for (const SelftestRecord& record : host.cell(cell))
+                found.emplace_back(record.key, record.id);
+            const auto expected = oracle_.find(cell);
+            const std::string text = difference(
+                cell, expected == oracle_.end() ? std::vector<Record>() : expected->second, found);
+            if (!text.empty()) return text;
+        }
+        return lists_state(lists);
+    }
+
     Lists<SelftestRecord>& lists() {
         if (!lists_)
             lists_.emplace(device_, Shape{width, height}, ListsOptions{.capacity_nodes = 1000});
@@ -210,6 +223,8 @@ int selftest(const Device& device, std::ostream& out) {
          [&] { return test.grows_and_counts(); }},
         {"sorts every list, ties included", [&] { return test.sorts(); }},
         {"takes the 4 nearest of every list", [&] { return test.takes_the_nearest(); }},
+        {"fills contiguous lists and fixed slots alike",
+         [&] { return test.fills_other_storages(); }},
         {"drops exactly what does not fit", [&] { return test.drops_exactly(); }},
     };
     bool all_passed = true;
