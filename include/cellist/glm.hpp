@@ -23,7 +23,7 @@ namespace cellist {
 
 namespace detail {
 
-/// "vec", "ivec", "uvec" or "dvec"; nullptr for scalars that kernels have no GLM type for.
+/// What stands before "vec" and "mat": "", "i", "u" or "d"; nullptr for other scalars.
 template <class T>
 constexpr const char* glm_prefix() {
     if constexpr (std::is_same_v<T, float>)
