@@ -129,6 +129,15 @@ void ListStorage::clear_counters() {
     shards_.fill(&zero, sizeof zero, shards_.size_bytes());
 }
 
+void ListStorage::fill_heads(cl_uint value, std::uint64_t first_word) {
+    const std::uint64_t offset = first_word * sizeof value;
+    if (offset == heads_.size_bytes()) return;
+    const cl_int code =
+        clEnqueueFillBuffer(device_->queue(), heads_.cl()(), &value, sizeof value, offset,
+                            heads_.size_bytes() - offset, 0, nullptr, nullptr);
+    if (code != CL_SUCCESS) throw OpenClError("clEnqueueFillBuffer", code);
+}
+
 void ListStorage::update(BuildReport& report, const Counters& counters,
                          std::uint64_t stored) const {
     report.stored = stored;

@@ -73,6 +73,8 @@ protected:
     [[nodiscard]] bool has_pool() const { return nodes_.cl()() != nullptr; }
     [[nodiscard]] Counters read_counters() const;
     void clear_counters();
+    /// Sets the heads from a word on. Does not block.
+    void fill_heads(cl_uint value, std::uint64_t first_word = 0);
     /// A report of the counters, with one pass more than before.
     void update(BuildReport& report, const Counters& counters, std::uint64_t stored) const;
     /// Throws OverflowError if the policy or a limit forbids a pool of `demand` nodes.

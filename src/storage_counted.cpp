@@ -17,19 +17,9 @@ CountedStorage::CountedStorage(std::shared_ptr<DeviceState> device, const Defini
 }
 
 void CountedStorage::clear() {
-    constexpr cl_uint zero = 0;
-    heads_.fill(&zero, sizeof zero, heads_.size_bytes());
+    fill_heads(0);
     clear_counters();
     kept_ = 0;
-}
-
-void CountedStorage::clear_counts() {
-    if (shape_.cells() == 0) return;
-    constexpr cl_uint zero = 0;
-    const cl_int code = clEnqueueFillBuffer(device_->queue(), heads_.cl()(), &zero, sizeof zero,
-                                            counts_at() * sizeof(cl_uint),
-                                            shape_.cells() * sizeof(cl_uint), 0, nullptr, nullptr);
-    if (code != CL_SUCCESS) throw OpenClError("clEnqueueFillBuffer", code);
 }
 
 void CountedStorage::begin_pass() {
@@ -37,7 +27,7 @@ void CountedStorage::begin_pass() {
         clear();
         mode_ = CELLIST_COUNTING;
     } else {
-        clear_counts();
+        fill_heads(0, counts_at());
         clear_counters();
     }
 }

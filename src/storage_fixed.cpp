@@ -30,8 +30,7 @@ void FixedStorage::set_slots(std::uint64_t slots) {
 }
 
 void FixedStorage::clear() {
-    constexpr cl_uint zero = 0;
-    heads_.fill(&zero, sizeof zero, heads_.size_bytes());
+    fill_heads(0);
     clear_counters();
     stored_ = 0;
 }

@@ -24,8 +24,7 @@ LinkedStorage::LinkedStorage(std::shared_ptr<DeviceState> device, const Definiti
 }
 
 void LinkedStorage::clear() {
-    constexpr cl_uint none = CELLIST_NONE;
-    heads_.fill(&none, sizeof none, heads_.size_bytes());
+    fill_heads(CELLIST_NONE);
     clear_counters();
 }
 

@@ -37,7 +37,6 @@ public:
 private:
     void place_lists(BuildReport& report);
     void check_repeats(const Counters& filled);
-    void clear_counts();
     [[nodiscard]] cl_uint counts_at() const { return static_cast<cl_uint>(shape_.cells() + 1); }
 
     CellScan scan_;
