@@ -68,13 +68,13 @@ typedef struct cellist_shard {
     CELLIST_UINT padding[8];
 } cellist_shard;
 
-// What a validation finds; each of its kernels says which of these it counts.
+// What a validation finds, from 0; each of its kernels says which of these it counts.
 typedef struct cellist_findings {
     CELLIST_UINT broken;
     CELLIST_UINT repeated;
     CELLIST_UINT unfilled;
     CELLIST_UINT nodes;
-    CELLIST_UINT first_bad_cell;
+    CELLIST_UINT bad_cell_from_end;  // CELLIST_NONE less the lowest cell that is bad, or 0
 } cellist_findings;
 
 #endif
