@@ -6,6 +6,7 @@
 #include "build.hpp"
 #include "cell_scan.hpp"
 #include "cellist_kernels.hpp"
+#include "sort.hpp"
 #include "storages.hpp"
 
 namespace cellist::detail {
@@ -109,14 +110,9 @@ void Arguments::add_lists(const ListsCore& lists) { lists.add_to(*this); }
 
 unsigned read_mode(const ListsCore& lists) { return lists.mode(); }
 
-cl::Event ListsCore::sort(const std::string& key, Order order) {
-    const std::string key_function =
-        std::string("static inline ulong cellist_sort_key(CELLIST_RECORD record) {\n    return ") +
-        (order == Order::descending ? "~" : "") + "cellist_order(\n#line 1 \"sort expression\"\n" +
-        key + "\n);\n}\n";
-    Arguments arguments;
-    add_to(arguments);
-    return kernel("cellist_sort", kernels::sort_cl, key_function).enqueue(cell_range(), arguments);
+cl::Event ListsCore::sort(const std::string& key, Order order, unsigned bits) {
+    if (!sorter_) sorter_ = std::make_unique<ListSorter>(device_, definitions_);
+    return sorter_->sort(*this, {key, bits, order});
 }
 
 /// The length of every list, in words of a device buffer that start at `at`.

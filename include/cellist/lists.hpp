@@ -119,13 +119,14 @@ public:
     /// first call for a member compiles a kernel; does not block otherwise.
     template <class M>
     cl::Event sort(M T::*member, Order order = Order::ascending) {
-        return core_->sort("record." + detail::member_name(member), order);
+        return core_->sort("record." + detail::member_name(member), order,
+                           sizeof(M) <= 4 ? 32 : 64);
     }
 
     /// The same by an OpenCL C expression of `record`, of integer or float type, such as
     /// "record.x * record.x + record.y * record.y". Throws OpenClError where it does not compile.
     cl::Event sort_by(const std::string& expression, Order order = Order::ascending) {
-        return core_->sort(expression, order);
+        return core_->sort(expression, order, 64);
     }
 
     /// How long the lists are. Blocks.

@@ -77,4 +77,20 @@ typedef struct cellist_findings {
     CELLIST_UINT bad_cell_from_end;  // CELLIST_NONE less the lowest cell that is bad, or 0
 } cellist_findings;
 
+// Where a long list is sorted; see sort_long.cl.
+typedef struct cellist_sort_long {
+    CELLIST_UINT cell;
+    CELLIST_UINT length;  // nodes; 0 where the list is not sorted there
+    CELLIST_UINT first;   // first node of a list in one piece
+    CELLIST_UINT chunk;   // first chunk
+} cellist_sort_long;
+
+// What the kernels that sort find out about the lists, from 0.
+typedef struct cellist_sort_state {
+    CELLIST_UINT longer;          // lists that are longer than those of the class
+    CELLIST_UINT chunks;          // of all long lists
+    CELLIST_UINT longest_chunks;  // of one list
+    CELLIST_UINT broken;          // lists with links that no build makes
+} cellist_sort_state;
+
 #endif

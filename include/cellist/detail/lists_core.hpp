@@ -19,6 +19,7 @@ namespace cellist::detail {
 
 class Build;
 class CellScan;
+class ListSorter;
 class ListStorage;
 
 /// Lists without the record's C++ type: a storage, and the kernels that read and sort any storage.
@@ -43,7 +44,7 @@ public:
                              const std::function<void(const Slice&)>& read);
 
     void clear();
-    cl::Event sort(const std::string& key, Order order);
+    cl::Event sort(const std::string& key, Order order, unsigned bits);
     [[nodiscard]] std::function<Validation()> validate() const;
 
     /// Enqueues the reading of every list's length; `lengths` has them when the event has completed.
@@ -108,6 +109,7 @@ private:
     bool reading_slice_ = false;
     mutable std::map<std::string, Kernel> kernels_;  ///< the library's, by name and definitions
     mutable std::unique_ptr<CellScan> scan_;
+    std::unique_ptr<ListSorter> sorter_;
 };
 
 }  // namespace cellist::detail
