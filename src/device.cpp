@@ -178,6 +178,11 @@ cl::Event DeviceState::marker() const {
     });
 }
 
+const std::optional<Profile>& DeviceState::profile() {
+    std::call_once(profile_once_, [&] { profile_ = load_profile(info); });
+    return profile_;
+}
+
 cl::Program DeviceState::program(const std::string& source, const std::string& options) {
     const std::lock_guard lock(mutex_);
     const std::string key = options + '\0' + source;

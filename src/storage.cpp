@@ -190,6 +190,12 @@ bool ListStorage::review(BuildReport& report) {
     return review_pass(report);
 }
 
+void ListStorage::release_pool() noexcept {
+    settle();
+    capacity_nodes_ = 0;
+    nodes_ = Memory();
+}
+
 void ListStorage::recover(bool without_pool) {
     settle();
     open_ = false;
@@ -212,6 +218,8 @@ std::unique_ptr<ListStorage> make_storage(std::shared_ptr<DeviceState> device,
             return std::make_unique<CountedStorage>(std::move(device), definitions, shape, options);
         case Storage::fixed:
             return std::make_unique<FixedStorage>(std::move(device), definitions, shape, options);
+        case Storage::automatic:
+            break;
     }
     throw Error("unknown storage");
 }

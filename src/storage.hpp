@@ -19,6 +19,12 @@
 
 namespace cellist::detail {
 
+/// The kernel did not insert the same records again where that is needed.
+class UnrepeatableError : public Error {
+public:
+    using Error::Error;
+};
+
 /// How a container keeps its nodes: the buffers, and the passes of a build. One class a storage; the
 /// device's side of all of them is kernels/cellist/lists.clh.
 class ListStorage {
@@ -47,6 +53,9 @@ public:
 
     /// Blocks until nothing is on its way to this object's memory. Comes before the destructor.
     void settle() noexcept { reading_.settle(); }
+    /// Gives the nodes' memory back, before another storage takes this one's place. What is left may
+    /// only be destroyed, or be made whole by recover(). Blocks as settle() does.
+    void release_pool() noexcept;
     /// Makes what a failed build may have left undone, with empty lists. The pool is empty afterwards
     /// if there was none, or if `without_pool` says so.
     void recover(bool without_pool);
