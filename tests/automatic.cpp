@@ -63,7 +63,7 @@ struct Scene {
     Kernel kernel;
 };
 
-constexpr ListsOptions automatic{.storage = Storage::automatic};
+const ListsOptions automatic{.storage = Storage::automatic};
 
 TEST_CASE("lists are complete in every build of a trial and after it") {
     CELLIST_RANDOM(random, 270u);
