@@ -16,9 +16,9 @@ struct DeviceState {
     cl::Device device;
     DeviceInfo info;
 
-    /// The program with this source and these options; builds it the first time. Throws OpenClError
-    /// with the compiler's log. Any thread may call it.
-    cl::Program program(const std::string& source, const std::string& options);
+    /// The program with this source and these options; builds it the first time. It stays where it is.
+    /// Throws OpenClError with the compiler's log. Any thread may call it.
+    const cl::Program& program(const std::string& source, const std::string& options);
 
 private:
     std::mutex mutex_;

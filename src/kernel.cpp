@@ -126,8 +126,8 @@ std::string with_hints(std::string log) {
     return log;
 }
 
-cl::Program build(detail::DeviceState& device, const Source& source,
-                  const detail::Definitions& definitions, cl_uint modes) {
+const cl::Program& build(detail::DeviceState& device, const Source& source,
+                         const detail::Definitions& definitions, cl_uint modes) {
     if (source.text.empty()) throw Error("the source of " + source.file_name + " is empty");
     if (definitions.needs_fp64 && !device.info.fp64)
         throw Error("a struct has members of type double, which " + device.info.name +
@@ -334,7 +334,7 @@ struct Kernel::Impl {
     /// The kernel for containers of these modes; builds it the first time.
     Variant& variant(cl_uint modes) {
         if (const auto known = variants.find(modes); known != variants.end()) return known->second;
-        const cl::Program program = build(*device, source, definitions, modes);
+        const cl::Program& program = build(*device, source, definitions, modes);
         return opencl([&]() -> Variant& {
             Variant made;
             made.kernel = kernel_called(program, name, source);
