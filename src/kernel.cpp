@@ -165,10 +165,11 @@ std::size_t type_size(std::string name, const detail::Definitions& definitions) 
 
 std::string text_of(const cl::Kernel& kernel, cl_uint index, cl_kernel_arg_info what) {
     std::size_t size = 0;
-    if (clGetKernelArgInfo(kernel(), index, what, 0, nullptr, &size) != CL_SUCCESS) return {};
+    cl_int code = clGetKernelArgInfo(kernel(), index, what, 0, nullptr, &size);
     std::string text(size, '\0');
-    if (clGetKernelArgInfo(kernel(), index, what, size, text.data(), nullptr) != CL_SUCCESS)
-        return {};
+    if (code == CL_SUCCESS)
+        code = clGetKernelArgInfo(kernel(), index, what, size, text.data(), nullptr);
+    if (code != CL_SUCCESS) throw OpenClError("clGetKernelArgInfo", code);
     return text.substr(0, text.find('\0'));
 }
 
@@ -260,6 +261,7 @@ cl::Kernel kernel_called(const cl::Program& program, const std::string& name,
     try {
         return {program, name.c_str()};
     } catch (const cl::Error& error) {
+        if (error.err() != CL_INVALID_KERNEL_NAME) throw;
         throw OpenClError(error.what(), error.err(),
                           source.file_name + " has no kernel called '" + name + "'");
     }
@@ -272,13 +274,15 @@ std::size_t written(const auto& list) {
     return list.size() - 3 * static_cast<std::size_t>(containers);
 }
 
+/// Null where there is no memory.
 cl_context context_of(const std::byte* memory_handle) {
     cl_mem memory = nullptr;
     std::memcpy(&memory, memory_handle, sizeof(cl_mem));
+    if (memory == nullptr) return nullptr;
     cl_context context = nullptr;
-    if (memory == nullptr || clGetMemObjectInfo(memory, CL_MEM_CONTEXT, sizeof(cl_context),
-                                                &context, nullptr) != CL_SUCCESS)
-        return nullptr;
+    const cl_int code =
+        clGetMemObjectInfo(memory, CL_MEM_CONTEXT, sizeof(cl_context), &context, nullptr);
+    if (code != CL_SUCCESS) throw OpenClError("clGetMemObjectInfo", code);
     return context;
 }
 
