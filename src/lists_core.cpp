@@ -37,7 +37,10 @@ std::vector<BuildReport> ListsCore::build(std::span<ListsCore* const> containers
                 throw Error("a build names the same container twice");
     std::vector<BuildReport> reports(containers.size());
     try {
-        for (ListsCore* container : containers) container->storage_->start();
+        for (ListsCore* container : containers) {
+            container->settle();
+            container->storage_->start();
+        }
         for (std::uint32_t pass = 1;; ++pass) {
             for (ListsCore* container : containers) container->storage_->begin_pass();
             insert();
@@ -64,23 +67,49 @@ std::vector<BuildReport> ListsCore::build(std::span<ListsCore* const> containers
     }
 }
 
-/// Leaves the lists empty, whatever failed before. `without_pool` gives the nodes' memory back; the
-/// next build grows anew.
+/// Leaves the lists empty, whatever failed before. `without_pool` gives the nodes' memory back, where
+/// the next build can grow anew.
 void ListsCore::empty_after_failure(bool without_pool) noexcept {
+    unsettled_ = true;
+    without_pool_ = without_pool;
     try {
-        storage_->recover(without_pool);
-        storage_->clear();
+        settle();
     } catch (...) {
-        // The device is lost; the error that is under way says why.
+        // The error that is under way says why. What comes next tries again.
     }
 }
 
-void ListsCore::clear() { storage_->clear(); }
-Validation ListsCore::validate() const { return storage_->validate(); }
+/// Empties the lists where a failure has left them in no order.
+void ListsCore::settle() const {
+    if (!unsettled_) return;
+    storage_->recover(without_pool_);
+    storage_->clear();
+    unsettled_ = false;
+}
+
+void ListsCore::clear() {
+    settle();
+    try {
+        storage_->clear();
+    } catch (...) {
+        empty_after_failure(false);
+        throw;
+    }
+}
+
+Validation ListsCore::validate() const {
+    settle();
+    return storage_->validate();
+}
+
+void ListsCore::add_to(Arguments& arguments) const {
+    settle();
+    storage_->add_to(arguments);
+}
+
 std::uint64_t ListsCore::capacity_nodes() const { return storage_->capacity_nodes(); }
 std::uint64_t ListsCore::pool_bytes() const { return storage_->bytes(); }
 unsigned ListsCore::mode() const { return storage_->mode(); }
-void ListsCore::add_to(Arguments& arguments) const { storage_->add_to(arguments); }
 
 /// A kernel of the library for this record. `key_function` defines cellist_sort_key, for sorting.
 Kernel& ListsCore::kernel(const std::string& name, std::string_view source,
@@ -181,7 +210,7 @@ std::vector<std::uint64_t> ListsCore::download(
 }
 
 void ListsCore::pack(const cl::Buffer& offsets,
-                     const std::function<cl::Buffer(std::uint64_t)>& allocate) const {
+                     const std::function<const cl::Buffer&(std::uint64_t)>& allocate) const {
     const Offsets device = device_offsets();
     opencl([&] {
         device_->queue.enqueueCopyBuffer(device.words.cl(), offsets, 0, 0,

@@ -37,8 +37,8 @@ public:
     /// the lists are complete. Throws OverflowError; the caller empties the lists then. Blocks.
     virtual bool end_pass(BuildReport& report) = 0;
 
-    /// Makes what a failed build may have left undone. The pool is empty afterwards if there was none,
-    /// or if `without_pool` says so.
+    /// Makes what a failed build may have left undone. A pool that grows is empty afterwards if there
+    /// was none, or if `without_pool` says so.
     virtual void recover(bool without_pool) = 0;
 
     /// Links, offsets and counts that do not belong together. Blocks.
@@ -70,7 +70,11 @@ protected:
     [[nodiscard]] std::optional<std::string> refusal(std::uint64_t capacity_nodes) const;
     /// Makes a pool of this capacity; the nodes of the old one are gone. Throws Error.
     void allocate_pool(std::uint64_t capacity_nodes);
-    [[nodiscard]] bool has_pool() const { return nodes_.cl()() != nullptr; }
+    /// Whether recover() starts with an empty pool. Under the other policies the pool stays the one of
+    /// the options, so that later builds hold as much.
+    [[nodiscard]] bool starts_anew(bool without_pool) const {
+        return options_.overflow == Overflow::grow && (without_pool || nodes_.cl()() == nullptr);
+    }
     [[nodiscard]] Counters read_counters() const;
     void clear_counters();
     /// Sets the heads from a word on. Does not block.

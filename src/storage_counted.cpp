@@ -100,7 +100,7 @@ Validation CountedStorage::validate() {
 void CountedStorage::recover(bool without_pool) {
     counted_ = false;
     mode_ = CELLIST_CONTIGUOUS;
-    if (without_pool || !has_pool()) allocate_pool(0);
+    if (starts_anew(without_pool)) allocate_pool(0);
 }
 
 }  // namespace cellist::detail

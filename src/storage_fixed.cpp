@@ -58,7 +58,7 @@ bool FixedStorage::end_pass(BuildReport& report) {
 }
 
 void FixedStorage::recover(bool without_pool) {
-    if (without_pool || !has_pool()) set_slots(0);
+    if (starts_anew(without_pool)) set_slots(0);
 }
 
 Validation FixedStorage::validate() {

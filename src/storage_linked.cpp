@@ -40,7 +40,7 @@ bool LinkedStorage::end_pass(BuildReport& report) {
 }
 
 void LinkedStorage::recover(bool without_pool) {
-    if (without_pool || !has_pool()) allocate_pool(0);
+    if (starts_anew(without_pool)) allocate_pool(0);
 }
 
 Validation LinkedStorage::validate() {

@@ -103,7 +103,7 @@ public:
     /// container. Blocks until it knows the size.
     [[nodiscard]] Packed<T> pack() const {
         Packed<T> packed{{core_.device(), shape().cells() + 1}, {core_.device(), 0}};
-        core_.pack(packed.offsets.cl(), [&](std::uint64_t count) {
+        core_.pack(packed.offsets.cl(), [&](std::uint64_t count) -> const cl::Buffer& {
             packed.records = Buffer<T>(core_.device(), count);
             return packed.records.cl();
         });

@@ -45,7 +45,7 @@ public:
     /// Writes cells + 1 offsets, calls `allocate` with the number of records, and copies the lists to
     /// the buffer that it returns, one behind the other.
     void pack(const cl::Buffer& offsets,
-              const std::function<cl::Buffer(std::uint64_t)>& allocate) const;
+              const std::function<const cl::Buffer&(std::uint64_t)>& allocate) const;
 
     [[nodiscard]] const Shape& shape() const { return shape_; }
     [[nodiscard]] std::uint64_t capacity_nodes() const;
@@ -59,6 +59,7 @@ public:
 
 private:
     void empty_after_failure(bool without_pool) noexcept;
+    void settle() const;
     Kernel& kernel(const std::string& name, std::string_view source,
                    const std::string& key_function = {}) const;
     [[nodiscard]] Range cell_range() const;
@@ -75,6 +76,9 @@ private:
     Definitions definitions_;
     Shape shape_;
     std::unique_ptr<ListStorage> storage_;
+    mutable bool unsettled_ =
+        false;                   ///< lists in no order: settle() has not succeeded since a failure
+    bool without_pool_ = false;  ///< how it has to settle
     mutable std::map<std::string, Kernel> kernels_;  ///< the library's, by name and key
 };
 
