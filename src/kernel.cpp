@@ -30,19 +30,22 @@ struct Parameter {
 /// Takes the library's own #include lines out of a source, since its text stands before it already,
 /// and keeps the line numbers.
 std::string without_library_includes(const std::string& text, bool& uses_glm) {
-    static const std::regex include(R"(^[ \t]*#[ \t]*include[ \t]*[<"]cellist/(\w+)\.clh[>"])",
-                                    std::regex::multiline);
+    static const std::regex include(
+        R"([ \t]*#[ \t]*include[ \t]*[<"]cellist/(lists|glm)\.clh[>"])");
     std::string out;
-    auto rest = text.begin();
-    for (std::sregex_iterator match(text.begin(), text.end(), include), end; match != end;
-         ++match) {
-        const std::string name = (*match)[1];
-        if (name != "lists" && name != "glm") continue;
-        uses_glm = uses_glm || name == "glm";
-        out.append(rest, (*match)[0].first);
-        rest = (*match)[0].second;
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t size = std::min(text.find('\n', begin), text.size() - 1) + 1 - begin;
+        std::string line = text.substr(begin, size);
+        begin += size;
+        std::smatch match;  // of few lines: regular expressions are slow
+        if (line.find("cellist/") != std::string::npos &&
+            std::regex_search(line, match, include, std::regex_constants::match_continuous)) {
+            uses_glm = uses_glm || match[1] == "glm";
+            line.erase(0, static_cast<std::size_t>(match.length()));
+        }
+        out += line;
     }
-    return out.append(rest, text.end());
+    return out;
 }
 
 /// A program's text, put together from parts, and which lines come from which.
