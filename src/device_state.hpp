@@ -25,6 +25,11 @@ private:
     std::unordered_map<std::string, cl::Program> programs_;  ///< by options and source
 };
 
+/// Throws OpenClError if a call of the C interface has failed.
+inline void check(const char* call, cl_int code) {
+    if (code != CL_SUCCESS) throw OpenClError(call, code);
+}
+
 /// Runs OpenCL calls and turns their failure into the library's error.
 template <class Call>
 decltype(auto) opencl(Call&& call) {

@@ -16,6 +16,7 @@ namespace cellist {
 namespace {
 
 using detail::Arguments;
+using detail::check;
 using detail::opencl;
 
 /// What a kernel expects as one parameter.
@@ -168,11 +169,10 @@ std::size_t type_size(std::string name, const detail::Definitions& definitions) 
 
 std::string text_of(const cl::Kernel& kernel, cl_uint index, cl_kernel_arg_info what) {
     std::size_t size = 0;
-    cl_int code = clGetKernelArgInfo(kernel(), index, what, 0, nullptr, &size);
+    check("clGetKernelArgInfo", clGetKernelArgInfo(kernel(), index, what, 0, nullptr, &size));
     std::string text(size, '\0');
-    if (code == CL_SUCCESS)
-        code = clGetKernelArgInfo(kernel(), index, what, size, text.data(), nullptr);
-    if (code != CL_SUCCESS) throw OpenClError("clGetKernelArgInfo", code);
+    check("clGetKernelArgInfo",
+          clGetKernelArgInfo(kernel(), index, what, size, text.data(), nullptr));
     return text.substr(0, text.find('\0'));
 }
 
@@ -283,9 +283,8 @@ cl_context context_of(const std::byte* memory_handle) {
     std::memcpy(&memory, memory_handle, sizeof(cl_mem));
     if (memory == nullptr) return nullptr;
     cl_context context = nullptr;
-    const cl_int code =
-        clGetMemObjectInfo(memory, CL_MEM_CONTEXT, sizeof(cl_context), &context, nullptr);
-    if (code != CL_SUCCESS) throw OpenClError("clGetMemObjectInfo", code);
+    check("clGetMemObjectInfo",
+          clGetMemObjectInfo(memory, CL_MEM_CONTEXT, sizeof(cl_context), &context, nullptr));
     return context;
 }
 
