@@ -149,8 +149,9 @@ Device::Device(cl::Context context, cl::CommandQueue queue)
     detail::opencl([&] {
         if (queue_info<cl_context>(queue, CL_QUEUE_CONTEXT) != context())
             throw Error("the command queue belongs to another context");
-        if ((queue.getInfo<CL_QUEUE_PROPERTIES>() & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0)
-            throw Error("the command queue is out of order: cellist needs an in-order queue");
+        state_->out_of_order =
+            (queue_info<cl_command_queue_properties>(queue, CL_QUEUE_PROPERTIES) &
+             CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0;
         state_->device = cl::Device(queue_info<cl_device_id>(queue, CL_QUEUE_DEVICE), true);
         state_->info = describe(state_->device);
         state_->context = std::move(context);
@@ -178,7 +179,27 @@ void Device::finish() const {
     detail::opencl([&] { state_->queue.finish(); });
 }
 
+void Device::enqueue_wait(const std::vector<cl::Event>& events) const {
+    if (events.empty()) return;
+    detail::opencl([&] { state_->queue.enqueueBarrierWithWaitList(&events); });
+}
+
+cl::Event Device::enqueue_marker() const { return state_->marker(); }
+
 namespace detail {
+
+const cl::CommandQueue& DeviceState::ordered_queue() const {
+    if (out_of_order) opencl([&] { queue.enqueueBarrierWithWaitList(); });
+    return queue;
+}
+
+cl::Event DeviceState::marker() const {
+    return opencl([&] {
+        cl::Event event;
+        queue.enqueueMarkerWithWaitList(nullptr, &event);
+        return event;
+    });
+}
 
 const cl::Program& DeviceState::program(const std::string& source, const std::string& options) {
     const std::lock_guard lock(mutex_);
