@@ -211,6 +211,7 @@ bool ListStorage::review(BuildReport& report) {
 
 void ListStorage::release_pool() noexcept {
     settle();
+    if (!released_nodes_) released_nodes_ = capacity_nodes_;
     capacity_nodes_ = 0;
     nodes_ = Memory();
 }
@@ -218,6 +219,8 @@ void ListStorage::release_pool() noexcept {
 void ListStorage::recover(bool without_pool) {
     settle();
     open_ = false;
+    if (released_nodes_ && options_.overflow != Overflow::grow) allocate_pool(*released_nodes_);
+    released_nodes_.reset();
     make_whole(without_pool);
     clear();
 }
