@@ -6,6 +6,7 @@
 #include "build.hpp"
 #include "cell_scan.hpp"
 #include "cellist_kernels.hpp"
+#include "chooser.hpp"
 #include "storages.hpp"
 
 namespace cellist::detail {
@@ -37,8 +38,16 @@ ListsCore::ListsCore(std::shared_ptr<DeviceState> device, Definitions definition
       definitions_(std::move(definitions)),
       shape_(shape),
       options_(options),
-      storage_(make_storage(device_, definitions_, shape, options)) {
-    definitions_.modes = storage_->mode();
+      in_use_(options.storage) {
+    if (options.storage == Storage::automatic) {
+        chooser_ = std::make_unique<Chooser>(
+            Chooser::Container{shape.cells(), definitions_.records.back().size, options},
+            device_->profile());
+        use(chooser_->storage());
+    } else {
+        storage_ = make_storage(device_, definitions_, shape, options);
+        definitions_.modes = storage_->mode();
+    }
 }
 
 ListsCore::~ListsCore() {
@@ -246,10 +255,14 @@ BuildReport ListsCore::build_slices(const std::function<void()>& insert,
     settle();
     BuildReport all;
     const auto take_all_cells = [this] {
-        reading_slice_ = false;
+        in_slices_ = reading_slice_ = false;
         storage_->set_slice({0, shape_.cells()});
     };
     try {
+        // An automatic storage has slots for the records of all cells, not for the budget.
+        if (chooser_)
+            use(chooser_->storage() == Storage::fixed ? Storage::linked : chooser_->storage());
+        in_slices_ = true;
         const std::vector<cl_uint> counts = count(insert, all);
         const BuildReport counted =
             std::exchange(all, {.attempted = all.attempted, .rejected = all.rejected, .passes = 1});
