@@ -56,6 +56,7 @@ std::shared_ptr<Build> ListsCore::start_build(std::vector<ListsCore*> containers
     return build;
 }
 
+cl::Event ListsCore::marker(Build& build) { return build.marker(); }
 const std::vector<BuildReport>& ListsCore::finish(Build& build) { return build.finish(); }
 
 /// Leaves the lists empty, whatever failed before. `without_pool` gives the nodes' memory back, where
@@ -244,15 +245,14 @@ BuildReport ListsCore::build_slices(const std::function<void()>& insert,
                                     const std::function<void(const Slice&)>& read) {
     settle();
     BuildReport all;
-    const std::vector<cl_uint> counts = count(insert, all);
-    const BuildReport counted =
-        std::exchange(all, {.attempted = all.attempted, .rejected = all.rejected, .passes = 1});
-    const auto whole = [this]() noexcept {
+    const auto take_all_cells = [this] {
         reading_slice_ = false;
         storage_->set_slice({0, shape_.cells()});
-        empty_after_failure(false);
     };
     try {
+        const std::vector<cl_uint> counts = count(insert, all);
+        const BuildReport counted =
+            std::exchange(all, {.attempted = all.attempted, .rejected = all.rejected, .passes = 1});
         for (std::uint64_t first = 0; first < shape_.cells();) {
             const PlannedSlice slice = plan_slice(first, counts);
             storage_->clear();
@@ -275,11 +275,13 @@ BuildReport ListsCore::build_slices(const std::function<void()>& insert,
             reading_slice_ = false;
             first += slice.range.cells;
         }
+        take_all_cells();
+        storage_->recover(false);
     } catch (...) {
-        whole();
+        take_all_cells();
+        empty_after_failure(false);
         throw;
     }
-    whole();
     return all;
 }
 

@@ -35,6 +35,8 @@ public:
     /// Enqueues a build of all containers at once: `insert` runs the kernels that fill them.
     static std::shared_ptr<Build> start_build(std::vector<ListsCore*> containers,
                                               std::function<void()> insert);
+    /// Completes after the first passes. The build has failed where this throws.
+    [[nodiscard]] static cl::Event marker(Build& build);
     /// The rest of a build: a report for each container. Blocks.
     static const std::vector<BuildReport>& finish(Build& build);
 
