@@ -38,16 +38,22 @@ std::uint64_t too_many_releases = 0;
 cl_icd_dispatch drivers{};  ///< where calls go to
 cl_icd_dispatch layer{};    ///< where calls come from
 
-/// Counts a call. The code that it fails with, or CL_SUCCESS.
-cl_int next_call(const char* name, cl_int resources, cl_int object) {
+struct Verdict {
+    cl_int code = CL_SUCCESS;  ///< what the call fails with, if it does
+    bool first = false;        ///< no call has failed before
+};
+
+/// Counts a call.
+Verdict next_call(const char* name, cl_int resources, cl_int object) {
     const std::lock_guard lock(mutex);
-    if (!plan || pauses > 0) return CL_SUCCESS;
+    if (!plan || pauses > 0) return {};
     ++calls;
     const bool lost = plan->extent == Plan::Extent::lasting && calls > plan->call;
-    if (calls != plan->call && calls != plan->again && !lost) return CL_SUCCESS;
+    if (calls != plan->call && calls != plan->again && !lost) return {};
     const cl_int code = plan->code == Plan::Code::resources ? resources : object;
-    if (first_fault.call.empty()) first_fault = {name, code};
-    return code;
+    const bool first = first_fault.call.empty();
+    if (first) first_fault = {name, code};
+    return {code, first};
 }
 
 void created(const void* handle, References::Kind kind) {
@@ -129,12 +135,18 @@ template <class Result, class... Args, Result (CL_API_CALL* cl_icd_dispatch::*En
 struct Call<Entry> {
     static inline const char* name = nullptr;
     static inline cl_int code = CL_SUCCESS;
+    /// Where a wait fails after another failure, it does wait: a program can do no more to know that a
+    /// device has stopped to write to its memory.
+    static constexpr bool waits = std::is_same_v<Call, Call<&cl_icd_dispatch::clFinish>> ||
+                                  std::is_same_v<Call, Call<&cl_icd_dispatch::clWaitForEvents>>;
 
     /// An entry point that fails. What it creates is counted: its result, or the event of a command.
     static Result CL_API_CALL fallible(Args... arguments) {
-        if (const cl_int failure = next_call(name, code, invalid_object<Args...>());
-            failure != CL_SUCCESS)
-            return failed(failure, arguments...);
+        if (const Verdict verdict = next_call(name, code, invalid_object<Args...>());
+            verdict.code != CL_SUCCESS) {
+            if (waits && !verdict.first) (drivers.*Entry)(arguments...);
+            return failed(verdict.code, arguments...);
+        }
         const Result result = (drivers.*Entry)(arguments...);
         if constexpr (!std::is_same_v<Result, cl_int>) {
             if constexpr (std::is_same_v<Result, void*>)
@@ -148,9 +160,9 @@ struct Call<Entry> {
     }
 
     static Result CL_API_CALL retain(Args... handle) {
-        if (const cl_int failure = next_call(name, code, invalid_object<Args...>());
-            failure != CL_SUCCESS)
-            return failure;
+        if (const Verdict verdict = next_call(name, code, invalid_object<Args...>());
+            verdict.code != CL_SUCCESS)
+            return verdict.code;
         const cl_int result = (drivers.*Entry)(handle...);
         if (result == CL_SUCCESS) (retained(handle), ...);
         return result;
@@ -336,6 +348,11 @@ Fault disarm() {
     const std::lock_guard lock(mutex);
     plan.reset();
     return first_fault;
+}
+
+bool failed() {
+    const std::lock_guard lock(mutex);
+    return !first_fault.call.empty();
 }
 
 Pause::Pause() {

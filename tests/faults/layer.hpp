@@ -31,6 +31,8 @@ struct Fault {
 void arm(const Plan& plan);
 /// Lets all calls through again, and says which was the first to fail.
 Fault disarm();
+/// Whether a call has failed since arm().
+bool failed();
 
 /// Lets calls of its scope through and does not count them: those of the test, not of the library.
 class Pause {
