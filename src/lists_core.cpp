@@ -40,8 +40,12 @@ std::vector<BuildReport> ListsCore::build(std::span<ListsCore* const> containers
     try {
         for (ListsCore* container : containers) container->storage_->start();
         for (std::uint32_t pass = 1;; ++pass) {
-            for (ListsCore* container : containers) container->storage_->begin_pass();
+            for (ListsCore* container : containers) {
+                container->storage_->begin_pass();
+                container->storage_->open(true);
+            }
             insert();
+            for (ListsCore* container : containers) container->storage_->open(false);
             std::optional<std::size_t> incomplete;
             for (std::size_t i = 0; i < containers.size(); ++i)
                 if (!containers[i]->storage_->end_pass(reports[i])) incomplete = i;
@@ -69,6 +73,7 @@ std::vector<BuildReport> ListsCore::build(std::span<ListsCore* const> containers
 /// next build grows anew.
 void ListsCore::empty_after_failure(bool without_pool) noexcept {
     try {
+        storage_->open(false);
         storage_->recover(without_pool);
         storage_->clear();
     } catch (...) {

@@ -61,7 +61,9 @@ void ListStorage::add_to(Arguments& arguments) const {
         static_cast<cl_uint>(capacity_nodes_),
         shard_bits_,
         mode_,
-        slots_};
+        slots_,
+        0,
+        open_ ? static_cast<cl_uint>(shape_.cells()) : 0};
     arguments.add_nodes(nodes_.cl(), record().name);
     arguments.add(heads_.cl());
     arguments.add(shards_.cl());
@@ -120,6 +122,7 @@ ListStorage::Counters ListStorage::read_counters() const {
         sum.allocated += shard.allocated;
         sum.dropped += wide(shard.dropped_low, shard.dropped_high);
         sum.rejected += wide(shard.rejected_low, shard.rejected_high);
+        sum.late += wide(shard.late_low, shard.late_high);
     }
     return sum;
 }

@@ -37,6 +37,9 @@ public:
     /// the lists are complete. Throws OverflowError; the caller empties the lists then. Blocks.
     virtual bool end_pass(BuildReport& report) = 0;
 
+    /// Whether kernels may insert: only inside of a build.
+    void open(bool inserts) { open_ = inserts; }
+
     /// Makes what a failed build may have left undone. The pool is empty afterwards if there was none,
     /// or if `without_pool` says so.
     virtual void recover(bool without_pool) = 0;
@@ -58,6 +61,7 @@ protected:
         std::uint64_t allocated = 0;
         std::uint64_t dropped = 0;
         std::uint64_t rejected = 0;
+        std::uint64_t late = 0;
     };
 
     ListStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
@@ -93,6 +97,7 @@ protected:
     std::uint64_t capacity_nodes_ = 0;
     cl_uint shard_bits_ = 0;
     cl_uint slots_ = 0;
+    bool open_ = false;
     Memory heads_;
     Memory nodes_;
     Memory shards_;

@@ -89,12 +89,13 @@ Validation CountedStorage::validate() {
     const std::uint64_t missing = kept_ > found.nodes ? kept_ - found.nodes : found.nodes - kept_;
     const CellScan::Sums inserted = scan_.sums(heads_.cl(), CELLIST_NONE);
     const std::uint64_t counted = inserted.total + found.unfilled;
-    const std::uint64_t expected = kept_ + read_counters().dropped;
+    const Counters counters = read_counters();
+    const std::uint64_t expected = kept_ + counters.dropped;
     // Counts end at their limit, where what was dropped goes on.
     const bool wrong_counts =
         inserted.longest < CELLIST_CELL_COUNT_MAX ? counted != expected : counted > expected;
     return {found.broken == 0 && wrong_counts ? std::uint64_t{1} : found.broken, 0,
-            found.unfilled + (found.broken == 0 ? missing : 0), bad_cell(found)};
+            found.unfilled + (found.broken == 0 ? missing : 0), counters.late, bad_cell(found)};
 }
 
 void CountedStorage::recover(bool without_pool) {

@@ -68,10 +68,11 @@ Validation FixedStorage::validate() {
     const CellScan::Sums demand = scan_.sums(heads_.cl(), CELLIST_NONE);
     const std::uint64_t lost = stored > stored_ ? stored - stored_ : stored_ - stored;
     const std::uint64_t over = demand.total - stored;
-    const std::uint64_t dropped = read_counters().dropped;
+    const Counters counters = read_counters();
     // Counts end at their limit, where what was dropped goes on.
-    const bool sound = demand.longest < CELLIST_CELL_COUNT_MAX ? over == dropped : over <= dropped;
-    return {sound ? std::uint64_t{0} : std::uint64_t{1}, 0, lost, {}};
+    const bool sound = demand.longest < CELLIST_CELL_COUNT_MAX ? over == counters.dropped
+                                                               : over <= counters.dropped;
+    return {sound ? std::uint64_t{0} : std::uint64_t{1}, 0, lost, counters.late, {}};
 }
 
 }  // namespace cellist::detail

@@ -53,7 +53,9 @@ Validation LinkedStorage::validate() {
     add_to(arguments);
     arguments.add(reached.cl());
     const cellist_findings found = findings(*validate_, arguments);
-    return {found.broken, found.repeated, read_counters().allocated - found.nodes, bad_cell(found)};
+    const Counters counters = read_counters();
+    return {found.broken, found.repeated, counters.allocated - found.nodes, counters.late,
+            bad_cell(found)};
 }
 
 }  // namespace cellist::detail

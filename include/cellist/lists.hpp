@@ -115,8 +115,8 @@ public:
 
     /// Checks that every allocated node is reached from exactly one head, exactly once. Finds any
     /// corruption of heads and links in time proportional to cells + nodes. Takes one bit of device
-    /// memory a node. Sums are compared with those of the last build: a kernel that inserted outside
-    /// of one shows as an error in Storage::fixed. Blocks.
+    /// memory a node. Sums are compared with those of the last build; inserts outside of one are
+    /// counted. Blocks.
     [[nodiscard]] Validation validate() const { return core_.validate(); }
 
     [[nodiscard]] const Shape& shape() const { return core_.shape(); }

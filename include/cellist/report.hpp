@@ -32,12 +32,14 @@ struct Validation {
     std::uint64_t broken_links = 0;    ///< links, offsets or counts that lead outside of the lists
     std::uint64_t repeated_nodes = 0;  ///< links to a node that is in a list already: cycles, too
     std::uint64_t lost_nodes = 0;      ///< nodes that no list leads to, or that were never written
+    std::uint64_t late_inserts =
+        0;  ///< inserts outside of a build since the lists were cleared: refused
     /// Lowest cell that shows one of these. None where all is well, or where only sums differ.
     std::optional<std::uint64_t> first_bad_cell;
 
-    /// True if every stored node is in exactly one list, exactly once.
+    /// True if every stored node is in exactly one list, exactly once, and every insert was in a build.
     [[nodiscard]] bool ok() const {
-        return broken_links == 0 && repeated_nodes == 0 && lost_nodes == 0;
+        return broken_links == 0 && repeated_nodes == 0 && lost_nodes == 0 && late_inserts == 0;
     }
     /// One line for people.
     [[nodiscard]] std::string message() const;
