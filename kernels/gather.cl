@@ -7,7 +7,7 @@
 #include <cellist/lists.clh>
 
 kernel void cellist_gather(CELLIST_LISTS(CELLIST_RECORD, lists), uint begin, uint end,
-                           global const uint* offsets, global CELLIST_RECORD* records) {
+                           global const uint* offsets, global struct CELLIST_RECORD* records) {
     const size_t item = get_global_id(0);
     if (item >= end - begin) return;
     const uint cell = begin + (uint)item;

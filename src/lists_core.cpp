@@ -115,7 +115,7 @@ cl::Event ListsCore::sort(const std::string& key, Order order) {
             "#pragma clang diagnostic error \"-Wdivision-by-zero\"\n"
             "#pragma clang diagnostic error \"-Warray-bounds\"\n#endif\n"
             "#line 1 \"sort expression\"\n"
-            "static inline ulong cellist_sort_key(CELLIST_RECORD record) { return ") +
+            "static inline ulong cellist_sort_key(struct CELLIST_RECORD record) { return ") +
         (order == Order::descending ? "~" : "") + "cellist_order(\n#line 1 \"sort expression\"\n" +
         key + "\n); }\n#ifdef __clang__\n#pragma clang diagnostic pop\n#endif\n";
     Arguments arguments;

@@ -42,9 +42,9 @@ std::string layout_checks(const RecordType& record) {
 
 /// Whether record a comes before record b: by the member that `key` means, then by all members.
 std::string order_definition(const RecordType& record) {
-    std::string text = "static inline int CELLIST_OVERLOAD cellist_record_before(" + record.name +
-                       " a, " + record.name + " b, uint key)\n{\n    ulong x = 0, y = 0;\n" +
-                       "    switch (key) {\n";
+    std::string text = "static inline int CELLIST_OVERLOAD cellist_record_before(struct " +
+                       record.name + " a, struct " + record.name +
+                       " b, uint key)\n{\n    ulong x = 0, y = 0;\n" + "    switch (key) {\n";
     for (const RecordMember& member : record.members)
         if (member.is_scalar)
             text += "    case cellist_key_" + member.name + ": x = cellist_order(a." + member.name +
