@@ -92,8 +92,8 @@ TEST_CASE("sources and logs of any length and content end in a kernel or in the 
 }
 
 TEST_CASE("the name of a file may have any characters") {
-    for (const std::string name :
-         {"a \"quoted\" name", "back\\slash\\", "two\nlines", std::string("nul\0x", 5)}) {
+    for (const std::string& name : {std::string("a \"quoted\" name"), std::string("back\\slash\\"),
+                                    std::string("two\nlines"), std::string("nul\0x", 5)}) {
         INFO(name);
         const Source source{.text = "kernel void broken(void) { oops; }\n", .file_name = name};
         const auto error = error_of<OpenClError>([&] { Kernel(device(), source, "broken"); });
