@@ -16,6 +16,7 @@ namespace cellist {
 namespace {
 
 using detail::Arguments;
+using detail::check;
 using detail::opencl;
 using detail::ProgramText;
 
@@ -43,8 +44,8 @@ ProgramText whole_source(const Source& source, const detail::Definitions& defini
     return whole;
 }
 
-cl::Program build(detail::DeviceState& device, const Source& source,
-                  const detail::Definitions& definitions, cl_uint modes) {
+const cl::Program& build(detail::DeviceState& device, const Source& source,
+                         const detail::Definitions& definitions, cl_uint modes) {
     if (source.text.empty()) throw Error("the source of " + source.file_name + " is empty");
     if (definitions.needs_fp64 && !device.info.fp64)
         throw Error("a struct has members of type double, which " + device.info.name +
@@ -82,10 +83,10 @@ std::size_t type_size(std::string name, const detail::Definitions& definitions) 
 
 std::string text_of(const cl::Kernel& kernel, cl_uint index, cl_kernel_arg_info what) {
     std::size_t size = 0;
-    if (clGetKernelArgInfo(kernel(), index, what, 0, nullptr, &size) != CL_SUCCESS) return {};
+    check("clGetKernelArgInfo", clGetKernelArgInfo(kernel(), index, what, 0, nullptr, &size));
     std::string text(size, '\0');
-    if (clGetKernelArgInfo(kernel(), index, what, size, text.data(), nullptr) != CL_SUCCESS)
-        return {};
+    check("clGetKernelArgInfo",
+          clGetKernelArgInfo(kernel(), index, what, size, text.data(), nullptr));
     return text.substr(0, text.find('\0'));
 }
 
@@ -177,6 +178,7 @@ cl::Kernel kernel_called(const cl::Program& program, const std::string& name,
     try {
         return {program, name.c_str()};
     } catch (const cl::Error& error) {
+        if (error.err() != CL_INVALID_KERNEL_NAME) throw;
         throw OpenClError(error.what(), error.err(),
                           source.file_name + " has no kernel called '" + name + "'");
     }
@@ -189,13 +191,14 @@ std::size_t written(const auto& list) {
     return list.size() - 3 * static_cast<std::size_t>(containers);
 }
 
+/// Null where there is no memory.
 cl_context context_of(const std::byte* memory_handle) {
     cl_mem memory = nullptr;
     std::memcpy(&memory, memory_handle, sizeof(cl_mem));
+    if (memory == nullptr) return nullptr;
     cl_context context = nullptr;
-    if (memory == nullptr || clGetMemObjectInfo(memory, CL_MEM_CONTEXT, sizeof(cl_context),
-                                                &context, nullptr) != CL_SUCCESS)
-        return nullptr;
+    check("clGetMemObjectInfo",
+          clGetMemObjectInfo(memory, CL_MEM_CONTEXT, sizeof(cl_context), &context, nullptr));
     return context;
 }
 
@@ -251,7 +254,7 @@ struct Kernel::Impl {
     /// The kernel for containers of these modes; builds it the first time.
     Variant& variant(cl_uint modes) {
         if (const auto known = variants.find(modes); known != variants.end()) return known->second;
-        const cl::Program program = build(*device, source, definitions, modes);
+        const cl::Program& program = build(*device, source, definitions, modes);
         return opencl([&]() -> Variant& {
             Variant made;
             made.kernel = kernel_called(program, name, source);
@@ -294,7 +297,7 @@ cl::Event Kernel::enqueue(const Range& range, const Arguments& arguments) {
 
     cl::Event event;
     opencl([&] {
-        const cl::CommandQueue& queue = impl_->device->queue;
+        const cl::CommandQueue& queue = impl_->device->ordered_queue();
         const auto& extents = range.global;
         if (std::find(extents.begin(), extents.end(), 0u) != extents.end())
             queue.enqueueMarkerWithWaitList(nullptr, &event);

@@ -1,6 +1,17 @@
+#include <algorithm>
+
 #include <cellist/report.hpp>
 
 namespace cellist {
+
+Lengths::Lengths(const std::vector<std::uint32_t>& lengths) {
+    for (const std::uint32_t length : lengths) {
+        ++histogram[length];
+        total += length;
+        nonempty_cells += length > 0 ? 1 : 0;
+        longest = std::max<std::uint64_t>(longest, length);
+    }
+}
 
 std::string Validation::message() const {
     if (ok()) return "every node is in exactly one list";

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace cellist {
 
@@ -18,8 +19,18 @@ struct BuildReport {
                                        ///< more after growing
 };
 
+/// The cells that have lists while a build in slices reads them: first_cell ... first_cell + cells - 1.
+struct Slice {
+    std::uint64_t first_cell;
+    std::uint64_t cells;
+};
+
 /// How long the lists are.
 struct Lengths {
+    Lengths() = default;
+    /// Of lists with these lengths.
+    explicit Lengths(const std::vector<std::uint32_t>& lengths);
+
     /// Cells by the length of their list; no entry where no list has a length.
     std::map<std::uint64_t, std::uint64_t> histogram;
     std::uint64_t longest = 0;         ///< nodes in the longest list

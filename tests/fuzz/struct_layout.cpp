@@ -295,23 +295,26 @@ void compare_records(const Device& device, Input& input, const Struct& record,
                   "insert_all_", with_modes);
     const Buffer<cl_uint> device_cells(device, cell_of);
     const Buffer<cl_uchar> device_records(device, std::vector<cl_uchar>(records));
-    detail::ListsCore* const core = &lists;
-    const std::vector<BuildReport> reports = detail::ListsCore::build({&core, 1}, [&] {
+    const auto build = detail::ListsCore::start_build({&lists}, [&] {
         detail::Arguments arguments;
         lists.add_to(arguments);
         arguments.add(device_cells);
         arguments.add(device_records.cl());
         insert.enqueue(count, arguments);
     });
-    CELLIST_FUZZ_REQUIRE(reports[0].stored == count && reports[0].attempted == count);
+    const BuildReport report = detail::ListsCore::finish(*build).front();
+    CELLIST_FUZZ_REQUIRE(report.stored == count && report.attempted == count);
 
     lists.sort("record" + key.path, descending ? Order::descending : Order::ascending);
-    CELLIST_FUZZ_REQUIRE(lists.validate().ok());
+    CELLIST_FUZZ_REQUIRE(lists.validate()().ok());
     Bytes found;
-    const std::vector<std::uint64_t> offsets = lists.download([&](std::uint64_t total) -> void* {
+    std::vector<cl_uint> offsets;
+    detail::Arrival done;
+    lists.download(done, offsets, [&](std::uint64_t total) -> void* {
         found.resize(total * type.size);
         return found.data();
     });
+    done.wait();
 
     const auto at = [&](const Bytes& bytes, std::size_t i) { return &bytes[i * type.size]; };
     CELLIST_FUZZ_REQUIRE(found.size() == records.size());
