@@ -7,6 +7,7 @@
 #include "cell_scan.hpp"
 #include "cellist_kernels.hpp"
 #include "chooser.hpp"
+#include "expression.hpp"
 #include "storages.hpp"
 
 namespace cellist::detail {
@@ -130,10 +131,18 @@ void Arguments::add_lists(const ListsCore& lists) { lists.add_to(*this); }
 unsigned read_mode(const ListsCore& lists) { return lists.mode(); }
 
 cl::Event ListsCore::sort(const std::string& key, Order order) {
+    check_expression(key);
+    // Where clang knows that a value is undefined, it is an error: the sort around it would be undefined
+    // as well.
     const std::string key_function =
-        std::string("static inline ulong cellist_sort_key(CELLIST_RECORD record) {\n    return ") +
+        std::string(
+            "#ifdef __clang__\n#pragma clang diagnostic push\n"
+            "#pragma clang diagnostic error \"-Wdivision-by-zero\"\n"
+            "#pragma clang diagnostic error \"-Warray-bounds\"\n#endif\n"
+            "#line 1 \"sort expression\"\n"
+            "static inline ulong cellist_sort_key(struct CELLIST_RECORD record) { return ") +
         (order == Order::descending ? "~" : "") + "cellist_order(\n#line 1 \"sort expression\"\n" +
-        key + "\n);\n}\n";
+        key + "\n); }\n#ifdef __clang__\n#pragma clang diagnostic pop\n#endif\n";
     Arguments arguments;
     add_to(arguments);
     return kernel("cellist_sort", kernels::sort_cl, key_function).enqueue(cell_range(), arguments);

@@ -121,7 +121,10 @@ public:
     }
 
     /// The same by an OpenCL C expression of `record`, of integer or float type, such as
-    /// "record.x * record.x + record.y * record.y". Throws OpenClError where it does not compile.
+    /// "record.x * record.x + record.y * record.y". Throws OpenClError where it does not compile, and
+    /// Error where it is not one expression of up to 1024 characters: comments, braces, statements,
+    /// text and directives are refused. Its value must be defined: after a division by 0 the order is
+    /// not, and records may be lost.
     cl::Event sort_by(const std::string& expression, Order order = Order::ascending) {
         return core_->sort(expression, order);
     }
