@@ -116,6 +116,16 @@ int main(int argc, char** argv) try {
     add_nearest(suite);
     add_pack(suite);
     add_clear(suite);
+    if (!gpu) {
+        add_peer_std_sort(suite);
+        add_peer_counting_sort(suite);
+#ifdef BENCH_TBB
+        add_peer_parallel_sort(suite);
+#endif
+    }
+#ifdef BENCH_BOOST_COMPUTE
+    add_peer_boost_compute(suite);
+#endif
     const bool ok = suite.run();
     benchmark::Shutdown();
     return ok ? 0 : 1;

@@ -38,7 +38,7 @@ std::string Keeping::name() const {
 
 const std::vector<Keeping>& storages() {
     static const std::vector<Keeping> all{
-        {"linked", "sharded", {.storage = cellist::Storage::linked}},
+        {"linked", "", {.storage = cellist::Storage::linked}},
         {"counted", "", {.storage = cellist::Storage::counted}},
         {"fixed", "", {.storage = cellist::Storage::fixed}},
     };

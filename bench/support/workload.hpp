@@ -47,17 +47,17 @@ struct Workload {
 /// How lists are kept.
 struct Keeping {
     std::string storage;     ///< as benchmarks are named
-    std::string allocation;  ///< the same; empty where the storage allocates nothing
+    std::string allocation;  ///< the same; empty for what the options take by default
     cellist::ListsOptions options;
 
     [[nodiscard]] std::string name() const;
 };
 
-/// The storages, with the default allocation.
+/// The storages, each with its default options.
 [[nodiscard]] const std::vector<Keeping>& storages();
 /// The storage that the library chooses itself; none where it has no such choice.
 [[nodiscard]] const std::vector<Keeping>& automatic_storages();
-/// Linked lists with each allocation.
+/// Linked lists with each allocation, by its name.
 [[nodiscard]] const std::vector<Keeping>& allocations();
 
 /// Whether a device of this size has room for `copies` containers of a workload at once.
