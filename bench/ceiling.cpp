@@ -84,6 +84,10 @@ void add_ceilings(Suite& suite) {
           Operation{"exchange", &Ceilings::exchange, 8, 0},
           Operation{"exchange_and_store", &Ceilings::exchange_and_store, 8, 1}}) {
         for (const Workload& workload : suite.workloads()) {
+            // Every size of random cells, and the base of the others.
+            if (workload.distribution.id != BENCH_RANDOM &&
+                workload.name() != suite.base(workload.distribution).name())
+                continue;
             if (!fits(suite.device().info(), workload, storages().front())) continue;
             suite.add(std::string("ceiling/operation:") + operation.name + "/" + workload.name(),
                       [=, &suite]() -> Result {

@@ -6,7 +6,7 @@ namespace bench {
 
 void add_nearest(Suite& suite) {
     add_cases(
-        suite, "nearest", suite.readable_workloads(), storages(),
+        suite, "nearest", random_and_coherent(suite.workloads(readable_nodes)), storages(),
         []<class Record>(const Suite& s, const Workload& workload, const Keeping& keeping) {
             constexpr cl_uint k = 8;
             Containers<Record> containers(s, workload, keeping);

@@ -5,7 +5,7 @@
 namespace bench {
 
 void add_pack(Suite& suite) {
-    add_cases(suite, "pack", suite.readable_workloads(), storages(),
+    add_cases(suite, "pack", random_and_coherent(suite.workloads(readable_nodes)), storages(),
               []<class Record>(const Suite& s, const Workload& workload, const Keeping& keeping) {
                   Containers<Record> containers(s, workload, keeping);
                   cellist::Kernel read(s.device(), source_of<Record>(kernels::read_cl, "read.cl"),

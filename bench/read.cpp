@@ -50,9 +50,11 @@ Result build_read(const Suite& suite, const Workload& workload, const Keeping& k
 /// The workloads that storages are compared on: 5 distributions by 5 occupancies, a quarter of the
 /// usual size, or so small that every list can be read by one work-item.
 std::vector<Workload> storage_grid(const Suite& suite) {
+    std::vector<cl_uint> occupancies{1, 4, 16, 64, 256};
+    if (suite.effort() == Effort::tiny) occupancies = {4};
     std::vector<Workload> grid;
     for (const Distribution& distribution : distributions) {
-        for (const cl_uint occupancy : {1u, 4u, 16u, 64u, 256u}) {
+        for (const cl_uint occupancy : occupancies) {
             Workload workload = suite.base(distribution);
             workload.occupancy = occupancy;
             workload.nodes /= 4;
@@ -66,7 +68,7 @@ std::vector<Workload> storage_grid(const Suite& suite) {
 }  // namespace
 
 void add_read(Suite& suite) {
-    add_cases(suite, "read", suite.readable_workloads(), storages(),
+    add_cases(suite, "read", suite.workloads(readable_nodes), storages(),
               []<class Record>(const Suite& s, const Workload& workload, const Keeping& keeping) {
                   return read<Record>(s, workload, keeping);
               });
@@ -81,7 +83,6 @@ void add_read(Suite& suite) {
                   return build_read<Record>(s, workload, keeping, Input::stored);
               });
 
-    if (suite.effort() == Effort::quick) return;
     std::vector<Keeping> keepings = storages();
     keepings.insert(keepings.end(), automatic_storages().begin(), automatic_storages().end());
     add_cases(suite, "build_read/input:generated", storage_grid(suite), keepings,

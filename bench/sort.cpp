@@ -7,6 +7,9 @@ namespace bench {
 
 namespace {
 
+/// Longest list that is sorted in a benchmark.
+constexpr double sortable_nodes = 1 << 12;
+
 template <class Record>
 void check_sorted(const Suite& suite, const Workload& workload, cellist::Lists<Record>& lists) {
     cellist::Buffer<cl_uint> unsorted(suite.device(), 1);
@@ -27,7 +30,7 @@ void check_sorted(const Suite& suite, const Workload& workload, cellist::Lists<R
 
 void add_sort(Suite& suite) {
     // Lists of one length each, beside the other workloads.
-    std::vector<Workload> workloads = suite.readable_workloads();
+    std::vector<Workload> workloads = suite.workloads(sortable_nodes);
     for (const cl_uint length : {8u, 16u, 32u, 64u}) {
         workloads.push_back(suite.base(coherent));
         workloads.back().occupancy = length;

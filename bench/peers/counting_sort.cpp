@@ -45,7 +45,7 @@ struct Stored {
     explicit Stored(const Workload& workload)
         : cells(uninitialized<cl_uint>(workload.nodes)),
           records(uninitialized<Record12>(workload.nodes)) {
-        const std::unique_ptr<Item[]> items = items_of(workload);
+        const Array<Item> items = items_of(workload);
         for (std::size_t i = 0; i < workload.nodes; ++i) {
             cells[i] = items[i].cell;
             records[i] = items[i].record;
@@ -54,8 +54,8 @@ struct Stored {
     [[nodiscard]] cl_uint cell(std::size_t i) const { return cells[i]; }
     [[nodiscard]] Record12 record(std::size_t i) const { return records[i]; }
 
-    std::unique_ptr<cl_uint[]> cells;
-    std::unique_ptr<Record12[]> records;
+    Array<cl_uint> cells;
+    Array<Record12> records;
 };
 
 /// Room for numbers of each thread, in cache lines of their own.
@@ -199,6 +199,7 @@ public:
           counts_(threads, partitions_),
           prefix_sums_(threads, partitions_),
           begins_(partitions_ + 1),
+          buffers_(uninitialized<Line>(threads * partitions_)),
           lines_(uninitialized<Line>(workload.nodes / Line::items_max + 1)),
           lists_(workload) {
         begins_[partitions_] = workload.nodes;
@@ -217,7 +218,7 @@ public:
                             ++counts[input_.cell(i) >> shift_];
                         barrier.arrive_and_wait();
                         prefix_sums_.run(thread, counts_, begins_.data(), barrier);
-                        partition(first, last, counts);
+                        partition(thread, first, last, counts);
                         barrier.arrive_and_wait();
                         std::vector<cl_uint> places(std::size_t{1} << shift_);
                         for (std::size_t p = next_partition++; p < partitions_;
@@ -229,17 +230,17 @@ public:
     }
 
 private:
-    /// Partitions of about 128 KiB of items, at most 1,024 of them: their lines fit the first cache.
+    /// Partitions of about 256 KiB of items, at most 512 of them: so their lines fit the first cache.
     static unsigned shift_for(const Workload& workload) {
-        const std::uint64_t wanted = std::uint64_t{workload.nodes} * sizeof(Item) / (128 << 10);
-        const std::uint64_t partitions = std::clamp<std::uint64_t>(
-            std::bit_ceil(wanted + 1), 1, std::min(1024u, workload.cells()));
+        const std::uint64_t wanted = std::uint64_t{workload.nodes} * sizeof(Item) / (256 << 10);
+        const std::uint64_t partitions =
+            std::clamp<std::uint64_t>(std::bit_ceil(wanted), 1, std::min(512u, workload.cells()));
         return static_cast<unsigned>(std::bit_width(workload.cells() / partitions)) - 1;
     }
 
     /// Moves a thread's items to their partitions. `next` is where the next item of each goes.
-    void partition(std::uint64_t first, std::uint64_t last, cl_uint* next) {
-        const std::unique_ptr<Line[]> buffers = uninitialized<Line>(partitions_);
+    void partition(unsigned thread, std::uint64_t first, std::uint64_t last, cl_uint* next) {
+        Line* buffers = &buffers_[thread * partitions_];
         std::vector<cl_uint> begins(next, next + partitions_);
         for (std::uint64_t i = first; i < last; ++i) {
             const cl_uint cell = input_.cell(i);
@@ -293,7 +294,8 @@ private:
     Histograms counts_;
     PrefixSums prefix_sums_;
     std::vector<cl_uint> begins_;  ///< of the partitions' items
-    std::unique_ptr<Line[]> lines_;
+    Array<Line> buffers_;          ///< a line for each thread and partition
+    Array<Line> lines_;
     Lists lists_;
 };
 

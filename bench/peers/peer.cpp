@@ -2,8 +2,8 @@
 
 namespace bench::peers {
 
-std::unique_ptr<Item[]> items_of(const Workload& workload) {
-    std::unique_ptr<Item[]> items = uninitialized<Item>(workload.nodes);
+Array<Item> items_of(const Workload& workload) {
+    Array<Item> items = uninitialized<Item>(workload.nodes);
     in_parallel(std::max(1u, std::thread::hardware_concurrency()), workload.nodes,
                 [&](unsigned, std::uint64_t begin, std::uint64_t end) {
                     for (std::uint64_t at = begin; at < end; ++at) {

@@ -6,11 +6,17 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
+#include <new>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
+
+#if __has_include(<sys/mman.h>)
+#include <sys/mman.h>
+#endif
 
 #include "support/oracle.hpp"
 #include "support/records.hpp"
@@ -24,10 +30,24 @@ struct Item {
     Record12 record;
 };
 
-/// `size` elements without a value.
+struct Free {
+    void operator()(void* memory) const { std::free(memory); }
+};
 template <class T>
-std::unique_ptr<T[]> uninitialized(std::size_t size) {
-    return std::make_unique_for_overwrite<T[]>(size);
+using Array = std::unique_ptr<T[], Free>;
+
+/// `size` elements without a value, in large pages where the system has them: scattered stores to small
+/// ones spend much of their time on address translation.
+template <class T>
+Array<T> uninitialized(std::size_t size) {
+    constexpr std::size_t page_bytes = 2 << 20;
+    const std::size_t bytes = (size * sizeof(T) / page_bytes + 1) * page_bytes;
+    void* memory = std::aligned_alloc(page_bytes, bytes);
+    if (memory == nullptr) throw std::bad_alloc();
+#ifdef MADV_HUGEPAGE
+    madvise(memory, bytes, MADV_HUGEPAGE);
+#endif
+    return Array<T>(static_cast<T*>(memory));
 }
 
 /// The records of cell c are records[offsets[c]] ... records[offsets[c + 1] - 1].
@@ -36,7 +56,7 @@ struct Lists {
         : offsets(workload.cells() + 1), records(uninitialized<Record12>(workload.nodes)) {}
 
     std::vector<cl_uint> offsets;
-    std::unique_ptr<Record12[]> records;
+    Array<Record12> records;
 };
 
 /// Calls work(part, begin, end) for equal parts of 0 ... size - 1, each on a thread of its own.
@@ -92,7 +112,7 @@ inline double seconds_since(std::chrono::steady_clock::time_point begin) {
 }
 
 /// The items of a workload, in the order of insertion.
-std::unique_ptr<Item[]> items_of(const Workload& workload);
+Array<Item> items_of(const Workload& workload);
 
 /// The workloads that peers are compared on.
 std::vector<Workload> peer_workloads(const Suite& suite);

@@ -13,11 +13,11 @@ namespace {
 Result sort_lists(const Suite& suite, const Workload& workload) {
     const cl_uint length = workload.nodes / workload.cells();
     // Lists behind one another, in the order of insertion; and a copy to sort.
-    const std::unique_ptr<Record12[]> unsorted = uninitialized<Record12>(workload.nodes);
+    const Array<Record12> unsorted = uninitialized<Record12>(workload.nodes);
     for (cl_uint cell = 0; cell < workload.cells(); ++cell)
         for (cl_uint i = 0; i < length; ++i)
             unsorted[cell * length + i] = record_of<Record12>(cell + i * workload.cells());
-    const std::unique_ptr<Record12[]> records = uninitialized<Record12>(workload.nodes);
+    const Array<Record12> records = uninitialized<Record12>(workload.nodes);
     const auto by_key = [](const Record12& a, const Record12& b) { return a.key < b.key; };
 
     const auto run = [&] {

@@ -50,7 +50,8 @@ def merge(documents, effort, git):
         results.update({key: document["context"][key] for key in ("cuda_driver", "cub")})
     results.update({"git": git, "effort": effort})
     results["figures"] = [_figure(b) for document in documents for b in document["benchmarks"]]
-    copies = {_workload(f): f["bytes_per_s"] for f in select(results["figures"], "ceiling", operation="copy")}
+    copies = {_workload(f): f["bytes_per_s"]
+              for f in select(results["figures"], "ceiling", operation="copy", distribution="random")}
     for figure in results["figures"]:
         copy = copies.get(_workload(figure))
         if copy and "bytes_per_s" in figure:
@@ -59,7 +60,8 @@ def merge(documents, effort, git):
 
 
 def _workload(figure):
-    return tuple(figure.get(key) for key in ("distribution", "node_bytes", "occupancy", "nodes"))
+    """What a copy of all nodes depends on."""
+    return tuple(figure.get(key) for key in ("node_bytes", "occupancy", "nodes"))
 
 
 def select(figures, name, **labels):

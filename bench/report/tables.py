@@ -3,7 +3,7 @@
 import re
 
 from figures import fastest, select
-from ratios import LENGTHS, met
+from ratios import GOALS, LENGTHS, met
 
 
 def device_title(results):
@@ -59,7 +59,7 @@ def ratios_as_markdown(all_results):
             case = (ratio["name"], "" if ratio["case"].startswith("worst") else ratio["case"])
             if case not in cases:
                 cases.append(case)
-    cases.sort(key=lambda case: [c[0] for c in cases].index(case[0]))
+    cases.sort(key=lambda case: list(GOALS).index(case[0]))
     lines = ["| ratio | case | " + " | ".join(f"{device_title(r)} | goal" for r in all_results) + " |",
              "|---|---|" + "---|---|" * len(all_results)]
     for name, case in cases:

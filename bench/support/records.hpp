@@ -18,16 +18,14 @@ struct Record4 {
     cl_uint key;
 };
 struct Record12 {
-    cl_uint key;
-    cl_uint rest[2];
+    cl_uint key, b, c;
 };
 struct Record28 {
-    cl_uint key;
-    cl_uint rest[6];
+    cl_uint key, b, c, d, e, f, g;
 };
 CELLIST_STRUCT(Record4, key);
-CELLIST_STRUCT(Record12, key, rest);
-CELLIST_STRUCT(Record28, key, rest);
+CELLIST_STRUCT(Record12, key, b, c);
+CELLIST_STRUCT(Record28, key, b, c, d, e, f, g);
 
 template <class Record>
 inline constexpr cl_uint words_of = sizeof(Record) / sizeof(cl_uint);

@@ -10,7 +10,9 @@ Suite::Suite(const cellist::Device& device, Effort effort, cl_uint nodes, cl_uin
              unsigned threads)
     : device_(device), effort_(effort), nodes_(nodes), occupancy_(occupancy), threads_(threads) {
     if (effort == Effort::tiny) sampling_ = {.least = 1, .most = 1, .seconds = 0};
-    if (effort == Effort::quick) sampling_.seconds = 0.15;
+    // A GPU takes as many samples in less time.
+    const bool gpu = (device.info().type & CL_DEVICE_TYPE_GPU) != 0;
+    if (effort == Effort::quick || gpu) sampling_.seconds = 0.15;
 }
 
 std::uint64_t Suite::copies(std::uint64_t bytes) const {
@@ -34,16 +36,16 @@ std::vector<Workload> Suite::workloads() const {
         all.push_back(base);
         if (effort_ != Effort::full) continue;
         for (cl_uint bits = 12; bits <= 26; bits += 2) add(&Workload::nodes, 1u << bits);
+        if (distribution.id != BENCH_RANDOM && distribution.id != BENCH_COHERENT) continue;
         for (const cl_uint bytes : {8u, 32u}) add(&Workload::node_bytes, bytes);
         for (const cl_uint occupancy : {1u, 4u, 64u}) add(&Workload::occupancy, occupancy);
     }
     return all;
 }
 
-std::vector<Workload> Suite::readable_workloads() const {
+std::vector<Workload> Suite::workloads(double longest) const {
     std::vector<Workload> all = workloads();
-    std::erase_if(all,
-                  [](const Workload& workload) { return workload.longest() > readable_nodes; });
+    std::erase_if(all, [&](const Workload& workload) { return workload.longest() > longest; });
     return all;
 }
 

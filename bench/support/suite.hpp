@@ -46,11 +46,11 @@ public:
 
     /// The workload that the ratios are taken of.
     [[nodiscard]] Workload base(const Distribution& distribution) const;
-    /// The base with each distribution; under full effort also with each size from 2^12 to 2^26, each
-    /// size of a node, and several occupancies.
+    /// The base with each distribution; under full effort also with each size from 2^12 to 2^26, and,
+    /// of random and coherent cells, with each size of a node and several occupancies.
     [[nodiscard]] std::vector<Workload> workloads() const;
-    /// The same, with no list that one work-item would take too long to go through.
-    [[nodiscard]] std::vector<Workload> readable_workloads() const;
+    /// Those in which no list is longer than this.
+    [[nodiscard]] std::vector<Workload> workloads(double longest) const;
 
     /// Adds a case. `measure` sets up, checks the results once, and measures; what it throws makes the
     /// case fail. Cases that were added before under the same name are left out.

@@ -32,6 +32,14 @@ std::string Workload::name() const {
            "/nodes:" + std::to_string(nodes);
 }
 
+std::vector<Workload> random_and_coherent(std::vector<Workload> workloads) {
+    std::erase_if(workloads, [](const Workload& workload) {
+        const cl_uint id = workload.distribution.id;
+        return id != BENCH_RANDOM && id != BENCH_COHERENT;
+    });
+    return workloads;
+}
+
 std::string Keeping::name() const {
     return "storage:" + storage + (allocation.empty() ? "" : "/allocation:" + allocation);
 }

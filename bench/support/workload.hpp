@@ -44,6 +44,9 @@ struct Workload {
     [[nodiscard]] std::string name() const;
 };
 
+/// Those whose cells are random or coherent: the extremes of what memory makes of a workload.
+[[nodiscard]] std::vector<Workload> random_and_coherent(std::vector<Workload> workloads);
+
 /// How lists are kept.
 struct Keeping {
     std::string storage;     ///< as benchmarks are named
