@@ -1,16 +1,22 @@
-// Copies a range of lists into one array, one list behind the other, in the order of the lists.
+// Copies a value of each record of a range of lists into one array, one list behind the other, in the
+// order of the lists.
 //
 //   offsets   cells + 1          where each list goes, counted from the first list of all
-//   records   offsets[end] - offsets[begin]   out
+//   values    offsets[end] - offsets[begin]   out
 //
-// One work-item for each cell in begin ... end - 1; the range is padded to whole work-groups.
+// One work-item for each cell in begin ... end - 1; the range is padded to whole work-groups. The host
+// defines the value's type CELLIST_VALUE and cellist_value(CELLIST_RECORD).
 #include <cellist/lists.clh>
 
 kernel void cellist_gather(CELLIST_LISTS(CELLIST_RECORD, lists), uint begin, uint end,
-                           global const uint* offsets, global CELLIST_RECORD* records) {
+                           global const uint* offsets, global CELLIST_VALUE* values) {
     const size_t item = get_global_id(0);
     if (item >= end - begin) return;
     const uint cell = begin + (uint)item;
     uint at = offsets[cell] - offsets[begin];
-    cellist_for_each(lists, cell, node) records[at++] = cellist_get(lists, node);
+    const uint list_end = offsets[cell + 1] - offsets[begin];
+    cellist_for_each(lists, cell, node) {
+        if (at == list_end) break;
+        values[at++] = cellist_value(cellist_get(lists, node));
+    }
 }

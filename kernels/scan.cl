@@ -2,12 +2,14 @@
 //
 //   heads     the counts of the cells, from counts_at on; cellist_block_offsets writes the offsets
 //             of the lists to its begin: cells + 1, none over `capacity`
-//   sums      blocks    out: the sum of min(count, limit) over a block, in 64 bits
-//   maxima    blocks    out: the largest count of a block
-//   starts    blocks    the sum of all blocks before a block
+//   sums      blocks    the sum of min(count, limit) over a block, in 64 bits; then, in its place, the
+//                       sum of all blocks before it
+//   maxima    blocks    the largest count of a block
+//   totals    2         out: the sum of min(count, limit) over all cells, the largest count
 //
 // A work-group of CELLIST_SCAN_GROUP items has a block of CELLIST_SCAN_GROUP * CELLIST_SCAN_CELLS
-// cells, and there are cells / that + 1 blocks; the host sums them up. Barriers stand in uniform control flow.
+// cells, and there are cells / that + 1 blocks. One work-group sums up the blocks. Barriers stand in
+// uniform control flow.
 
 // Work-items of a group; a power of two. As in cell_scan.cpp.
 #define CELLIST_SCAN_GROUP 256
@@ -45,24 +47,56 @@ kernel __attribute__((reqd_work_group_size(CELLIST_SCAN_GROUP, 1, 1))) void cell
     }
 }
 
+// The sum of `value` over the work-items up to this one.
+static inline ulong cellist_group_scan(local ulong* sums, ulong value) {
+    const uint item = get_local_id(0);
+    sums[item] = value;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    for (uint step = 1; step < CELLIST_SCAN_GROUP; step *= 2) {
+        const ulong before = item >= step ? sums[item - step] : 0;
+        barrier(CLK_LOCAL_MEM_FENCE);
+        sums[item] += before;
+        barrier(CLK_LOCAL_MEM_FENCE);
+    }
+    return sums[item];
+}
+
+// One work-group.
+kernel __attribute__((reqd_work_group_size(CELLIST_SCAN_GROUP, 1, 1))) void cellist_block_starts(
+    global ulong* sums, global const uint* maxima, uint blocks, global ulong* totals) {
+    local ulong group_sums[CELLIST_SCAN_GROUP];
+    local uint group_maxima[CELLIST_SCAN_GROUP];
+    const uint item = get_local_id(0);
+    ulong before = 0;
+    uint maximum = 0;
+    for (uint first = 0; first < blocks; first += CELLIST_SCAN_GROUP) {
+        const uint block = first + item;
+        const ulong own = block < blocks ? sums[block] : 0;
+        const ulong up_to = cellist_group_scan(group_sums, own);
+        if (block < blocks) {
+            sums[block] = before + up_to - own;
+            maximum = max(maximum, maxima[block]);
+        }
+        before += group_sums[CELLIST_SCAN_GROUP - 1];
+        barrier(CLK_LOCAL_MEM_FENCE);
+    }
+    group_maxima[item] = maximum;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (item != 0) return;
+    for (uint i = 1; i < CELLIST_SCAN_GROUP; ++i) maximum = max(maximum, group_maxima[i]);
+    totals[0] = before;
+    totals[1] = maximum;
+}
+
 kernel __attribute__((reqd_work_group_size(CELLIST_SCAN_GROUP, 1, 1))) void cellist_block_offsets(
-    global uint* heads, uint counts_at, uint cells, global const ulong* starts, uint capacity) {
+    global uint* heads, uint counts_at, uint cells, global const ulong* sums, uint capacity) {
     local ulong group_sums[CELLIST_SCAN_GROUP];
     const uint item = get_local_id(0);
     const ulong first = ((ulong)get_group_id(0) * CELLIST_SCAN_GROUP + item) * CELLIST_SCAN_CELLS;
     ulong sum = 0;
     for (uint i = 0; i < CELLIST_SCAN_CELLS; ++i)
         if (first + i < cells) sum += heads[counts_at + first + i];
-    group_sums[item] = sum;
-    barrier(CLK_LOCAL_MEM_FENCE);
-    for (uint step = 1; step < CELLIST_SCAN_GROUP; step *= 2) {
-        const ulong before = item >= step ? group_sums[item - step] : 0;
-        barrier(CLK_LOCAL_MEM_FENCE);
-        group_sums[item] += before;
-        barrier(CLK_LOCAL_MEM_FENCE);
-    }
-
-    ulong at = starts[get_group_id(0)] + group_sums[item] - sum;
+    ulong at = sums[get_group_id(0)] + cellist_group_scan(group_sums, sum) - sum;
     for (uint i = 0; i < CELLIST_SCAN_CELLS; ++i) {
         // The cell behind the last takes the end of the last list.
         if (first + i > cells) break;

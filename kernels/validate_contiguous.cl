@@ -1,7 +1,7 @@
 // Checks the offsets of lists that lie behind one another: that they ascend inside the pool, and that
 // every list was filled.
 //
-//   findings   1   in: 0 and first_bad_cell = CELLIST_NONE; out: lists that end before they begin or
+//   findings   1   in: 0; out: lists that end before they begin or
 //                  behind the pool, nodes that no record was written to, nodes of all lists
 //
 // One work-item a cell; the range is padded to whole work-groups.
@@ -17,7 +17,7 @@ kernel void cellist_validate_contiguous(CELLIST_LISTS(CELLIST_RECORD, lists),
     // The first list begins with the pool.
     if (begin > end || end > lists_view.capacity_nodes || (cell == 0 && begin != 0)) {
         atomic_inc(&findings->broken);
-        atomic_min(&findings->first_bad_cell, cell);
+        atomic_max(&findings->bad_cell_from_end, CELLIST_NONE - cell);
         return;
     }
     const uint length = end - begin;
@@ -25,6 +25,6 @@ kernel void cellist_validate_contiguous(CELLIST_LISTS(CELLIST_RECORD, lists),
     // A list counts on past its end: those records were dropped.
     if (inserted < length) {
         atomic_add(&findings->unfilled, length - inserted);
-        atomic_min(&findings->first_bad_cell, cell);
+        atomic_max(&findings->bad_cell_from_end, CELLIST_NONE - cell);
     }
 }

@@ -1,7 +1,7 @@
 // Checks the links of every list: each allocated node is reached from exactly one head, exactly once.
 //
 //   reached   (capacity_nodes + 31) / 32   in: 0; a bit a node: some link leads to it
-//   findings  1                            in: 0 and first_bad_cell = CELLIST_NONE; out: links to nodes
+//   findings  1                            in: 0; out: links to nodes
 //                                          never allocated, links to nodes reached before, nodes
 //                                          reached
 //
@@ -44,5 +44,5 @@ kernel void cellist_validate_linked(CELLIST_LISTS(CELLIST_RECORD, lists),
         node = lists_nodes[node].next;
     }
     if (length) atomic_add(&findings->nodes, length);
-    if (bad) atomic_min(&findings->first_bad_cell, cell);
+    if (bad) atomic_max(&findings->bad_cell_from_end, CELLIST_NONE - cell);
 }

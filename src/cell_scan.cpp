@@ -1,7 +1,5 @@
 #include "cell_scan.hpp"
 
-#include <algorithm>
-
 #include "cellist_kernels.hpp"
 #include "device_state.hpp"
 
@@ -32,30 +30,30 @@ CellScan::CellScan(std::shared_ptr<DeviceState> device, std::uint64_t cells, cl_
       counts_at_(counts_at),
       blocks_(cells / (group * cells_of_item) + 1),
       block_sums_(scan_kernel(device_, "cellist_block_sums")),
+      block_starts_(scan_kernel(device_, "cellist_block_starts")),
       block_offsets_(scan_kernel(device_, "cellist_block_offsets")),
       sums_(device_, blocks_, sizeof(cl_ulong), "sums"),
-      maxima_(device_, blocks_, sizeof(cl_uint), "maxima") {}
+      maxima_(device_, blocks_, sizeof(cl_uint), "maxima"),
+      totals_(device_, 1, sizeof(Totals), "totals") {}
 
-CellScan::Sums CellScan::sums(const cl::Buffer& heads, cl_uint limit) {
+void CellScan::sum(const cl::Buffer& heads, cl_uint limit) {
     block_sums_.run(blocks_range(blocks_), heads, counts_at_, cells_, limit, sums_.cl(),
                     maxima_.cl());
-    Sums sums;
-    sums.before.resize(blocks_);
-    std::vector<cl_uint> maxima(blocks_);
-    sums_.read(sums.before.data(), blocks_ * sizeof(cl_ulong));
-    maxima_.read(maxima.data(), blocks_ * sizeof(cl_uint));
-    for (cl_ulong& block : sums.before) {
-        const cl_ulong own = block;
-        block = sums.total;
-        sums.total += own;
-    }
-    sums.longest = *std::max_element(maxima.begin(), maxima.end());
-    return sums;
+    block_starts_.run(blocks_range(1), sums_.cl(), maxima_.cl(), static_cast<cl_uint>(blocks_),
+                      totals_.cl());
 }
 
-void CellScan::write_offsets(const cl::Buffer& heads, const Sums& sums,
-                             std::uint64_t capacity_nodes) {
-    sums_.write(sums.before.data(), blocks_ * sizeof(cl_ulong));
+cl::Event CellScan::read_later(Totals& totals) const {
+    return totals_.read_later(&totals, sizeof totals);
+}
+
+CellScan::Totals CellScan::totals() const {
+    Totals totals;
+    totals_.read(&totals, sizeof totals);
+    return totals;
+}
+
+void CellScan::write_offsets(const cl::Buffer& heads, std::uint64_t capacity_nodes) {
     block_offsets_.run(blocks_range(blocks_), heads, counts_at_, cells_, sums_.cl(),
                        static_cast<cl_uint>(capacity_nodes));
 }

@@ -127,8 +127,8 @@ Device::Device(cl::Context context, cl::CommandQueue queue)
     detail::opencl([&] {
         if (queue.getInfo<CL_QUEUE_CONTEXT>()() != context())
             throw Error("the command queue belongs to another context");
-        if ((queue.getInfo<CL_QUEUE_PROPERTIES>() & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0)
-            throw Error("the command queue is out of order: cellist needs an in-order queue");
+        state_->out_of_order =
+            (queue.getInfo<CL_QUEUE_PROPERTIES>() & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0;
         state_->device = queue.getInfo<CL_QUEUE_DEVICE>();
         state_->info = describe(state_->device);
         state_->context = std::move(context);
@@ -156,7 +156,27 @@ void Device::finish() const {
     detail::opencl([&] { state_->queue.finish(); });
 }
 
+void Device::enqueue_wait(const std::vector<cl::Event>& events) const {
+    if (events.empty()) return;
+    detail::opencl([&] { state_->queue.enqueueBarrierWithWaitList(&events); });
+}
+
+cl::Event Device::enqueue_marker() const { return state_->marker(); }
+
 namespace detail {
+
+const cl::CommandQueue& DeviceState::ordered_queue() const {
+    if (out_of_order) opencl([&] { queue.enqueueBarrierWithWaitList(); });
+    return queue;
+}
+
+cl::Event DeviceState::marker() const {
+    return opencl([&] {
+        cl::Event event;
+        queue.enqueueMarkerWithWaitList(nullptr, &event);
+        return event;
+    });
+}
 
 cl::Program DeviceState::program(const std::string& source, const std::string& options) {
     const std::lock_guard lock(mutex_);

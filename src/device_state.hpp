@@ -15,6 +15,12 @@ struct DeviceState {
     cl::CommandQueue queue;
     cl::Device device;
     DeviceInfo info;
+    bool out_of_order = false;  ///< the queue
+
+    /// The queue, for one command that starts after all that were enqueued before.
+    const cl::CommandQueue& ordered_queue() const;
+    /// Completes when all that was enqueued has.
+    [[nodiscard]] cl::Event marker() const;
 
     /// The program with this source and these options; builds it the first time. Throws OpenClError
     /// with the compiler's log. Any thread may call it.

@@ -377,7 +377,7 @@ cl::Event Kernel::enqueue(const Range& range, const Arguments& arguments) {
 
     cl::Event event;
     opencl([&] {
-        const cl::CommandQueue& queue = impl_->device->queue;
+        const cl::CommandQueue& queue = impl_->device->ordered_queue();
         const auto& extents = range.global;
         if (std::find(extents.begin(), extents.end(), 0u) != extents.end())
             queue.enqueueMarkerWithWaitList(nullptr, &event);

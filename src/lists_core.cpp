@@ -1,18 +1,33 @@
 #include <algorithm>
-#include <optional>
+#include <utility>
 
 #include <cellist/detail/lists_core.hpp>
 
+#include "build.hpp"
 #include "cell_scan.hpp"
 #include "cellist_kernels.hpp"
-#include "storage.hpp"
+#include "storages.hpp"
 
 namespace cellist::detail {
 
 namespace {
 
-/// Builds in which the demand grows with every pass end here: the kernel does not repeat itself.
-constexpr std::uint32_t passes_max = 8;
+/// Puts another storage in the place of a container's own for as long as it lives.
+class Substitute {
+public:
+    Substitute(std::unique_ptr<ListStorage>& own, std::unique_ptr<ListStorage> other)
+        : place_(own), kept_(std::exchange(own, std::move(other))) {}
+    ~Substitute() {
+        place_->settle();
+        std::swap(place_, kept_);
+    }
+    Substitute(const Substitute&) = delete;
+    Substitute& operator=(const Substitute&) = delete;
+
+private:
+    std::unique_ptr<ListStorage>& place_;
+    std::unique_ptr<ListStorage> kept_;
+};
 
 }  // namespace
 
@@ -21,74 +36,69 @@ ListsCore::ListsCore(std::shared_ptr<DeviceState> device, Definitions definition
     : device_(std::move(device)),
       definitions_(std::move(definitions)),
       shape_(shape),
+      options_(options),
       storage_(make_storage(device_, definitions_, shape, options)) {
     definitions_.modes = storage_->mode();
 }
 
-ListsCore::ListsCore(ListsCore&&) noexcept = default;
-ListsCore& ListsCore::operator=(ListsCore&&) noexcept = default;
-ListsCore::~ListsCore() = default;
-
-std::vector<BuildReport> ListsCore::build(std::span<ListsCore* const> containers,
-                                          const std::function<void()>& insert) {
-    for (std::size_t i = 0; i < containers.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j)
-            if (containers[i] == containers[j])
-                throw Error("a build names the same container twice");
-    std::vector<BuildReport> reports(containers.size());
-    try {
-        for (ListsCore* container : containers) container->storage_->start();
-        for (std::uint32_t pass = 1;; ++pass) {
-            for (ListsCore* container : containers) container->storage_->begin_pass();
-            insert();
-            std::optional<std::size_t> incomplete;
-            for (std::size_t i = 0; i < containers.size(); ++i)
-                if (!containers[i]->storage_->end_pass(reports[i])) incomplete = i;
-            if (!incomplete) return reports;
-            if (pass == passes_max)
-                throw OverflowError("the kernel inserted more records in each of " +
-                                        std::to_string(passes_max) +
-                                        " passes: it must insert the same records every time",
-                                    reports[*incomplete]);
-        }
-    } catch (const OpenClError& error) {
-        // A driver may find out only now that it has no memory for a pool it had granted.
-        const bool out_of_memory = error.code() == CL_MEM_OBJECT_ALLOCATION_FAILURE ||
-                                   error.code() == CL_OUT_OF_RESOURCES ||
-                                   error.code() == CL_OUT_OF_HOST_MEMORY;
-        for (ListsCore* container : containers) container->empty_after_failure(out_of_memory);
-        throw;
-    } catch (...) {
-        for (ListsCore* container : containers) container->empty_after_failure(false);
-        throw;
-    }
+ListsCore::~ListsCore() {
+    if (pending_) std::exchange(pending_, nullptr)->abandon();
+    storage_->settle();
 }
+
+std::shared_ptr<Build> ListsCore::start_build(std::vector<ListsCore*> containers,
+                                              std::function<void()> insert) {
+    for (const ListsCore* container : containers)
+        if (container->reading_slice_)
+            throw Error("a container is built again while a slice of it is read");
+    auto build = std::make_shared<Build>(std::move(containers), std::move(insert));
+    build->enqueue();
+    return build;
+}
+
+const std::vector<BuildReport>& ListsCore::finish(Build& build) { return build.finish(); }
 
 /// Leaves the lists empty, whatever failed before. `without_pool` gives the nodes' memory back; the
 /// next build grows anew.
 void ListsCore::empty_after_failure(bool without_pool) noexcept {
     try {
         storage_->recover(without_pool);
-        storage_->clear();
     } catch (...) {
         // The device is lost; the error that is under way says why.
     }
 }
 
-void ListsCore::clear() { storage_->clear(); }
-Validation ListsCore::validate() const { return storage_->validate(); }
+void ListsCore::settle() const {
+    if (pending_) std::shared_ptr(pending_)->finish();
+}
+
+void ListsCore::add_to(Arguments& arguments) const {
+    if (pending_ && pending_->may_change()) settle();
+    storage_->add_to(arguments);
+}
+
+void ListsCore::clear() {
+    settle();
+    storage_->clear();
+}
+
+std::function<Validation()> ListsCore::validate() const {
+    settle();
+    return storage_->validate();
+}
+
 std::uint64_t ListsCore::capacity_nodes() const { return storage_->capacity_nodes(); }
 std::uint64_t ListsCore::pool_bytes() const { return storage_->bytes(); }
 unsigned ListsCore::mode() const { return storage_->mode(); }
-void ListsCore::add_to(Arguments& arguments) const { storage_->add_to(arguments); }
+cl::Event ListsCore::marker() const { return device_->marker(); }
 
-/// A kernel of the library for this record. `key_function` defines cellist_sort_key, for sorting.
+/// A kernel of the library for this record, compiled with more definitions in front.
 Kernel& ListsCore::kernel(const std::string& name, std::string_view source,
-                          const std::string& key_function) const {
-    const std::string id = name + "\n" + key_function;
+                          const std::string& definitions) const {
+    const std::string id = name + "\n" + definitions;
     if (const auto known = kernels_.find(id); known != kernels_.end()) return known->second;
-    const std::string text = "#define CELLIST_RECORD " + definitions_.records.back().name + "\n" +
-                             key_function + "#line 1 \"" + name + ".cl\"\n" + std::string(source);
+    const std::string text = "#define CELLIST_RECORD " + record() + "\n" + definitions +
+                             "#line 1 \"" + name + ".cl\"\n" + std::string(source);
     return kernels_.emplace(id, Kernel(device_, Source{.text = text}, name, definitions_))
         .first->second;
 }
@@ -120,74 +130,147 @@ Memory ListsCore::device_lengths(std::uint64_t at) const {
     return lengths;
 }
 
-Lengths ListsCore::lengths() const {
-    std::vector<cl_uint> values(shape_.cells());
-    device_lengths(0).read(values.data(), values.size() * sizeof(cl_uint));
-    Lengths result;
-    for (const cl_uint length : values) {
-        ++result.histogram[length];
-        result.total += length;
-        result.nonempty_cells += length > 0 ? 1 : 0;
-        result.longest = std::max<std::uint64_t>(result.longest, length);
-    }
-    return result;
+cl::Event ListsCore::read_lengths(std::vector<cl_uint>& lengths) const {
+    lengths.resize(shape_.cells());
+    return device_lengths(0).read_later(lengths.data(), lengths.size() * sizeof(cl_uint));
 }
 
 /// Where each list goes when all lists lie behind one another: cells + 1 offsets, then scratch.
-ListsCore::Offsets ListsCore::device_offsets() const {
+Memory ListsCore::device_offsets() const {
+    settle();
     const std::uint64_t counts_at = shape_.cells() + 1;
     Memory words = device_lengths(counts_at);
-    CellScan scan(device_, shape_.cells(), static_cast<cl_uint>(counts_at));
-    const CellScan::Sums sums = scan.sums(words.cl(), CELLIST_NONE);
-    scan.write_offsets(words.cl(), sums, sums.total);
-    return {std::move(words), sums.total};
+    if (!scan_)
+        scan_ =
+            std::make_unique<CellScan>(device_, shape_.cells(), static_cast<cl_uint>(counts_at));
+    scan_->sum(words.cl(), CELLIST_NONE);
+    scan_->write_offsets(words.cl(), storage_->stored());
+    return words;
 }
 
-/// Copies the lists of the cells begin ... end - 1 to the begin of `records`.
-void ListsCore::gather(std::uint64_t begin, std::uint64_t end, const Offsets& offsets,
-                       const cl::Buffer& records) const {
+/// Copies a value of each record of the cells begin ... end - 1 to the begin of `values`.
+void ListsCore::gather(std::uint64_t begin, std::uint64_t end, const Memory& offsets,
+                       const cl::Buffer& values, const std::string& type,
+                       const std::string& value) const {
     Arguments arguments;
     add_to(arguments);
     arguments.add(static_cast<cl_uint>(begin));
     arguments.add(static_cast<cl_uint>(end));
-    arguments.add(offsets.words.cl());
-    arguments.add(records);
-    kernel("cellist_gather", kernels::gather_cl).enqueue(Range::padded(end - begin), arguments);
+    arguments.add(offsets.cl());
+    arguments.add(values);
+    kernel("cellist_gather", kernels::gather_cl,
+           "#define CELLIST_VALUE " + type + "\n#define cellist_value(record) " + value + "\n")
+        .enqueue(Range::padded(end - begin), arguments);
 }
 
-std::vector<std::uint64_t> ListsCore::download(
-    const std::function<void*(std::uint64_t)>& allocate) const {
-    const Offsets device = device_offsets();
-    std::vector<cl_uint> words(shape_.cells() + 1);
-    device.words.read(words.data(), words.size() * sizeof(cl_uint));
-    std::vector<std::uint64_t> offsets(words.begin(), words.end());
+void ListsCore::download(Arrival& done, std::vector<cl_uint>& offsets,
+                         const std::function<void*(std::uint64_t)>& allocate) const {
+    const Memory words = device_offsets();
+    const std::uint64_t total = storage_->stored();
+    auto* target = static_cast<std::byte*>(allocate(total));
+    offsets.resize(shape_.cells() + 1);
+    done = words.read_later(offsets.data(), offsets.size() * sizeof(cl_uint));
 
     // Up to 256 MiB of lists at a time, at least one list, so that the copy fits beside the pool.
     const std::size_t record_bytes = definitions_.records.back().size;
     const std::uint64_t most = (std::uint64_t{256} << 20) / record_bytes;
-    auto* target = static_cast<std::byte*>(allocate(device.total));
+    const auto copy = [&](std::uint64_t begin, std::uint64_t end, std::uint64_t first,
+                          std::uint64_t count) {
+        if (count == 0) return;
+        const Memory records(device_, count, record_bytes, "download buffer");
+        gather(begin, end, words, records.cl(), record(), "record");
+        done = records.read_later(target + first * record_bytes, count * record_bytes);
+    };
+    if (total <= most) return copy(0, shape_.cells(), 0, total);
     for (std::uint64_t begin = 0; begin < shape_.cells();) {
+        done.wait();
         std::uint64_t end = begin + 1;
         while (end < shape_.cells() && offsets[end + 1] - offsets[begin] <= most) ++end;
-        const std::uint64_t count = offsets[end] - offsets[begin];
-        if (count > 0) {
-            Memory records(device_, count, record_bytes, "download buffer");
-            gather(begin, end, device, records.cl());
-            records.read(target + offsets[begin] * record_bytes, count * record_bytes);
-        }
+        copy(begin, end, offsets[begin], offsets[end] - offsets[begin]);
         begin = end;
     }
-    return offsets;
 }
 
 void ListsCore::pack(const cl::Buffer& offsets,
-                     const std::function<cl::Buffer(std::uint64_t)>& allocate) const {
-    const Offsets device = device_offsets();
+                     const std::function<cl::Buffer(std::uint64_t)>& allocate,
+                     const std::string& type, const std::string& value) const {
+    const Memory words = device_offsets();
     opencl([&] {
-        device_->queue.enqueueCopyBuffer(device.words.cl(), offsets, 0, 0,
-                                         (shape_.cells() + 1) * sizeof(cl_uint));
+        device_->ordered_queue().enqueueCopyBuffer(words.cl(), offsets, 0, 0,
+                                                   (shape_.cells() + 1) * sizeof(cl_uint));
     });
-    gather(0, shape_.cells(), device, allocate(device.total));
+    gather(0, shape_.cells(), words, allocate(storage_->stored()), type, value);
+}
+
+/// How many records the kernels insert into each cell. The report says that all of them are dropped.
+std::vector<cl_uint> ListsCore::count(const std::function<void()>& insert, BuildReport& report) {
+    auto counting = std::make_unique<CountedStorage>(
+        device_, definitions_, shape_,
+        ListsOptions{.overflow = Overflow::drop, .capacity_nodes = 0});
+    CountedStorage& counter = *counting;
+    const Substitute substitute(storage_, std::move(counting));
+    counter.start();
+    counter.begin_pass();
+    insert();
+    counter.end_pass();
+    return counter.counts(report);
+}
+
+/// The cells from `first` on whose lists fit into a pool together, at least one, and their records.
+ListsCore::PlannedSlice ListsCore::plan_slice(std::uint64_t first,
+                                              const std::vector<cl_uint>& counts) const {
+    const std::uint64_t most = storage_->most_nodes();
+    PlannedSlice slice{{first, 1}, counts[first], counts[first]};
+    for (std::uint64_t cell = first + 1; cell < shape_.cells(); ++cell) {
+        const std::uint64_t total = slice.total + counts[cell];
+        const std::uint64_t longest = std::max<std::uint64_t>(slice.longest, counts[cell]);
+        if (storage_->nodes_for(total, longest, slice.range.cells + 1) > most) break;
+        slice = {{first, slice.range.cells + 1}, total, longest};
+    }
+    return slice;
+}
+
+BuildReport ListsCore::build_slices(const std::function<void()>& insert,
+                                    const std::function<void(const Slice&)>& read) {
+    settle();
+    BuildReport all;
+    const std::vector<cl_uint> counts = count(insert, all);
+    const BuildReport counted =
+        std::exchange(all, {.attempted = all.attempted, .rejected = all.rejected, .passes = 1});
+    const auto whole = [this]() noexcept {
+        reading_slice_ = false;
+        storage_->set_slice({0, shape_.cells()});
+        empty_after_failure(false);
+    };
+    try {
+        for (std::uint64_t first = 0; first < shape_.cells();) {
+            const PlannedSlice slice = plan_slice(first, counts);
+            storage_->clear();
+            storage_->set_slice(slice.range);
+            storage_->reserve(slice.total, slice.longest);
+            const BuildReport report = finish(*start_build({this}, insert)).front();
+            all.stored += report.stored;
+            all.dropped += report.dropped;
+            all.passes += report.passes;
+            all.capacity_nodes = std::max(all.capacity_nodes, report.capacity_nodes);
+            if (report.stored + report.dropped != slice.total ||
+                report.rejected != counted.rejected)
+                throw Error("the kernel inserted " +
+                            std::to_string(report.stored + report.dropped) +
+                            " records into a slice of " + std::to_string(slice.range.cells) +
+                            " cells, and " + std::to_string(slice.total) +
+                            " when it counted them: it must insert the same records every time");
+            reading_slice_ = true;
+            read(slice.range);
+            reading_slice_ = false;
+            first += slice.range.cells;
+        }
+    } catch (...) {
+        whole();
+        throw;
+    }
+    whole();
+    return all;
 }
 
 }  // namespace cellist::detail

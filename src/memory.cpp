@@ -27,20 +27,40 @@ Memory::Memory(std::shared_ptr<DeviceState> state, std::uint64_t count, std::siz
 
 void Memory::write(const void* source, std::size_t bytes) {
     if (bytes == 0) return;
-    opencl([&] { state_->queue.enqueueWriteBuffer(buffer_, CL_TRUE, 0, bytes, source); });
+    opencl([&] { state_->ordered_queue().enqueueWriteBuffer(buffer_, CL_TRUE, 0, bytes, source); });
 }
 
 void Memory::read(void* target, std::size_t bytes) const {
     if (bytes == 0) return;
-    opencl([&] { state_->queue.enqueueReadBuffer(buffer_, CL_TRUE, 0, bytes, target); });
+    opencl([&] { state_->ordered_queue().enqueueReadBuffer(buffer_, CL_TRUE, 0, bytes, target); });
+}
+
+cl::Event Memory::write_later(const void* source, std::size_t bytes) {
+    if (bytes == 0) return state_->marker();
+    return opencl([&] {
+        cl::Event event;
+        state_->ordered_queue().enqueueWriteBuffer(buffer_, CL_FALSE, 0, bytes, source, nullptr,
+                                                   &event);
+        return event;
+    });
+}
+
+cl::Event Memory::read_later(void* target, std::size_t bytes) const {
+    if (bytes == 0) return state_->marker();
+    return opencl([&] {
+        cl::Event event;
+        state_->ordered_queue().enqueueReadBuffer(buffer_, CL_FALSE, 0, bytes, target, nullptr,
+                                                  &event);
+        return event;
+    });
 }
 
 void Memory::fill(const void* pattern, std::size_t pattern_bytes, std::size_t bytes) {
     if (bytes == 0) return;
     if (std::has_single_bit(pattern_bytes) && pattern_bytes <= 128) {
         // The C++ bindings take the pattern as a type, not as bytes.
-        const cl_int code = clEnqueueFillBuffer(state_->queue(), buffer_(), pattern, pattern_bytes,
-                                                0, bytes, 0, nullptr, nullptr);
+        const cl_int code = clEnqueueFillBuffer(state_->ordered_queue()(), buffer_(), pattern,
+                                                pattern_bytes, 0, bytes, 0, nullptr, nullptr);
         if (code != CL_SUCCESS) throw OpenClError("clEnqueueFillBuffer", code);
         return;
     }

@@ -38,7 +38,8 @@ ListStorage::ListStorage(std::shared_ptr<DeviceState> device, const Definitions&
       shape_(shape),
       options_(options),
       mode_(mode),
-      node_bytes_(node_bytes) {
+      node_bytes_(node_bytes),
+      slice_{0, shape.cells()} {
     definitions_.modes = mode;
     const std::uint64_t head_bytes = head_words * sizeof(cl_uint);
     const std::uint64_t allocation = device_->info.max_allocation_bytes;
@@ -61,7 +62,9 @@ void ListStorage::add_to(Arguments& arguments) const {
         static_cast<cl_uint>(capacity_nodes_),
         shard_bits_,
         mode_,
-        slots_};
+        slots_,
+        static_cast<cl_uint>(slice_.first_cell),
+        open_ ? static_cast<cl_uint>(slice_.cells) : 0};
     arguments.add_nodes(nodes_.cl(), record().name);
     arguments.add(heads_.cl());
     arguments.add(shards_.cl());
@@ -92,6 +95,17 @@ std::optional<std::string> ListStorage::refusal(std::uint64_t capacity_nodes) co
     return {};
 }
 
+std::uint64_t ListStorage::most_nodes() const {
+    if (options_.overflow != Overflow::grow) return capacity_nodes_;
+    std::uint64_t fits = 0;
+    std::uint64_t too_many = std::uint64_t{CELLIST_CAPACITY_NODES_MAX} + 1;
+    while (too_many - fits > 1) {
+        const std::uint64_t middle = fits + (too_many - fits) / 2;
+        (refusal(middle) ? too_many : fits) = middle;
+    }
+    return fits;
+}
+
 void ListStorage::require(std::uint64_t demand, const BuildReport& report) const {
     if (options_.overflow == Overflow::stop)
         throw OverflowError("the pool of " + std::to_string(capacity_nodes_) +
@@ -112,14 +126,18 @@ void ListStorage::allocate_pool(std::uint64_t capacity_nodes) {
     capacity_nodes_ = capacity_nodes;
 }
 
-ListStorage::Counters ListStorage::read_counters() const {
-    std::vector<cellist_shard> shards((std::size_t{1} << shard_bits_) + 1);
-    shards_.read(shards.data(), shards.size() * sizeof(cellist_shard));
+cl::Event ListStorage::read_counters(Shards& shards) const {
+    shards.resize((std::size_t{1} << shard_bits_) + 1);
+    return shards_.read_later(shards.data(), shards.size() * sizeof(cellist_shard));
+}
+
+ListStorage::Counters ListStorage::sum(const Shards& shards) {
     Counters sum;
     for (const cellist_shard& shard : shards) {
         sum.allocated += shard.allocated;
         sum.dropped += wide(shard.dropped_low, shard.dropped_high);
         sum.rejected += wide(shard.rejected_low, shard.rejected_high);
+        sum.late += wide(shard.late_low, shard.late_high);
     }
     return sum;
 }
@@ -133,30 +151,50 @@ void ListStorage::fill_heads(cl_uint value, std::uint64_t first_word) {
     const std::uint64_t offset = first_word * sizeof value;
     if (offset == heads_.size_bytes()) return;
     const cl_int code =
-        clEnqueueFillBuffer(device_->queue(), heads_.cl()(), &value, sizeof value, offset,
+        clEnqueueFillBuffer(device_->ordered_queue()(), heads_.cl()(), &value, sizeof value, offset,
                             heads_.size_bytes() - offset, 0, nullptr, nullptr);
     if (code != CL_SUCCESS) throw OpenClError("clEnqueueFillBuffer", code);
 }
 
-void ListStorage::update(BuildReport& report, const Counters& counters,
-                         std::uint64_t stored) const {
+void ListStorage::update(BuildReport& report, const Counters& counters, std::uint64_t stored) {
+    stored_ = stored;
     report.stored = stored;
     report.dropped = counters.dropped;
     report.rejected = counters.rejected;
     report.attempted = stored + counters.dropped + counters.rejected;
     report.capacity_nodes = capacity_nodes_;
-    ++report.passes;
 }
 
-cellist_findings ListStorage::findings(Kernel& kernel, const Arguments& arguments) {
-    cellist_findings findings{0, 0, 0, 0, CELLIST_NONE};
-    Memory memory(device_, 1, sizeof findings, "findings");
-    memory.write(&findings, sizeof findings);
+cl::Event ListStorage::find(Findings& findings, Kernel& kernel, const Arguments& arguments) const {
+    constexpr cl_uint zero = 0;
+    findings.memory = Memory(device_, 1, sizeof findings.found, "findings");
+    findings.memory.fill(&zero, sizeof zero, sizeof findings.found);
     Arguments all = arguments;
-    all.add(memory.cl());
+    all.add(findings.memory.cl());
     kernel.enqueue(Range::padded(shape_.cells()), all);
-    memory.read(&findings, sizeof findings);
-    return findings;
+    return findings.memory.read_later(&findings.found, sizeof findings.found);
+}
+
+void ListStorage::begin_pass() {
+    prepare_pass();
+    open_ = true;
+}
+
+bool ListStorage::end_pass() {
+    open_ = false;
+    return finish_pass();
+}
+
+bool ListStorage::review(BuildReport& report) {
+    reading_.wait();
+    return review_pass(report);
+}
+
+void ListStorage::recover(bool without_pool) {
+    settle();
+    open_ = false;
+    make_whole(without_pool);
+    clear();
 }
 
 std::unique_ptr<ListStorage> make_storage(std::shared_ptr<DeviceState> device,

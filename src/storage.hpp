@@ -1,9 +1,12 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include <cellist/detail/arrival.hpp>
 #include <cellist/detail/memory.hpp>
 #include <cellist/detail/record_type.hpp>
 #include <cellist/kernel.hpp>
@@ -27,22 +30,40 @@ public:
     /// Empties the lists. Does not block.
     virtual void clear() = 0;
 
-    /// A build is start(), then begin_pass(), the user's kernels and end_pass() until end_pass() says
-    /// that the lists are complete. More passes may follow, where another container needs them: they
-    /// fill the lists anew.
+    /// A build is start(), then passes until review() says that the lists are complete; see build.cpp.
+    /// More passes may follow, where another container needs them: they fill the lists anew.
     virtual void start() {}
-    /// Prepares the next run of the kernels.
-    virtual void begin_pass() = 0;
-    /// Takes the counters of a run into the report, and grows, stops or drops by the options. True if
-    /// the lists are complete. Throws OverflowError; the caller empties the lists then. Blocks.
-    virtual bool end_pass(BuildReport& report) = 0;
+    /// Enqueues what the next run of the kernels needs; from now on kernels may insert. Does not
+    /// block.
+    void begin_pass();
+    /// Enqueues what follows a run of the kernels, the reading of its counters above all. True if
+    /// another pass must follow that needs no review of this one. Does not block.
+    bool end_pass();
+    /// Takes the counters of the last pass into the report, and grows, stops or drops by the options.
+    /// True if the lists are complete. Throws OverflowError; the caller empties the lists then. Blocks.
+    bool review(BuildReport& report);
+    /// Whether a review can change the lists.
+    [[nodiscard]] bool may_grow() const { return options_.overflow != Overflow::drop; }
 
-    /// Makes what a failed build may have left undone. The pool is empty afterwards if there was none,
-    /// or if `without_pool` says so.
-    virtual void recover(bool without_pool) = 0;
+    /// Blocks until nothing is on its way to this object's memory. Comes before the destructor.
+    void settle() noexcept { reading_.settle(); }
+    /// Makes what a failed build may have left undone, with empty lists. The pool is empty afterwards
+    /// if there was none, or if `without_pool` says so.
+    void recover(bool without_pool);
 
-    /// Links, offsets and counts that do not belong together. Blocks.
-    [[nodiscard]] virtual Validation validate() = 0;
+    /// Looks for links, offsets and counts that do not belong together. The result may be asked for
+    /// once; that blocks, this does not.
+    [[nodiscard]] virtual std::function<Validation()> validate() = 0;
+
+    /// From now on, these cells alone have lists. The lists must be empty.
+    virtual void set_slice(const Slice& slice) { slice_ = slice; }
+    /// Nodes that lists need in so many cells, the longest of them as long, `total` together.
+    [[nodiscard]] virtual std::uint64_t nodes_for(std::uint64_t total, std::uint64_t longest,
+                                                  std::uint64_t cells) const = 0;
+    /// The most nodes that the policy lets the pool have.
+    [[nodiscard]] std::uint64_t most_nodes() const;
+    /// Makes room for such lists in the slice, if the policy is to grow.
+    virtual void reserve(std::uint64_t total, std::uint64_t longest) = 0;
 
     /// Adds what CELLIST_LISTS declares.
     void add_to(Arguments& arguments) const;
@@ -52,17 +73,26 @@ public:
     [[nodiscard]] std::uint64_t bytes() const { return bytes_with(capacity_nodes_); }
     /// The mode in which the lists are read.
     [[nodiscard]] cl_uint mode() const { return mode_; }
+    /// Records in the lists.
+    [[nodiscard]] std::uint64_t stored() const { return stored_; }
 
 protected:
     struct Counters {
         std::uint64_t allocated = 0;
         std::uint64_t dropped = 0;
         std::uint64_t rejected = 0;
+        std::uint64_t late = 0;
     };
+    using Shards = std::vector<cellist_shard>;
 
     ListStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
                 const Shape& shape, const ListsOptions& options, cl_uint mode,
                 std::size_t node_bytes, std::uint64_t head_words);
+
+    virtual void prepare_pass() { clear(); }
+    virtual bool finish_pass() = 0;
+    virtual bool review_pass(BuildReport& report) = 0;
+    virtual void make_whole(bool without_pool) = 0;
 
     [[nodiscard]] const RecordType& record() const { return definitions_.records.back(); }
     [[nodiscard]] std::uint64_t bytes_with(std::uint64_t capacity_nodes) const;
@@ -71,18 +101,28 @@ protected:
     /// Makes a pool of this capacity; the nodes of the old one are gone. Throws Error.
     void allocate_pool(std::uint64_t capacity_nodes);
     [[nodiscard]] bool has_pool() const { return nodes_.cl()() != nullptr; }
-    [[nodiscard]] Counters read_counters() const;
+    /// Enqueues the reading of the counters: they are there when the event has completed.
+    [[nodiscard]] cl::Event read_counters(Shards& shards) const;
+    [[nodiscard]] static Counters sum(const Shards& shards);
     void clear_counters();
     /// Sets the heads from a word on. Does not block.
     void fill_heads(cl_uint value, std::uint64_t first_word = 0);
-    /// A report of the counters, with one pass more than before.
-    void update(BuildReport& report, const Counters& counters, std::uint64_t stored) const;
+    /// A report of the counters.
+    void update(BuildReport& report, const Counters& counters, std::uint64_t stored);
     /// Throws OverflowError if the policy or a limit forbids a pool of `demand` nodes.
     void require(std::uint64_t demand, const BuildReport& report) const;
-    /// Runs a validating kernel over all cells: (container, arguments..., findings). Blocks.
-    [[nodiscard]] cellist_findings findings(Kernel& kernel, const Arguments& arguments);
     /// A kernel of the library for this record.
     [[nodiscard]] Kernel kernel(const std::string& name, std::string_view source) const;
+
+    /// What a validating kernel finds, on its way to the host.
+    struct Findings {
+        Memory memory;
+        cellist_findings found{};
+    };
+    /// Enqueues a validating kernel over all cells: (container, arguments..., findings). What it found
+    /// is there when the event has completed.
+    [[nodiscard]] cl::Event find(Findings& findings, Kernel& kernel,
+                                 const Arguments& arguments) const;
 
     std::shared_ptr<DeviceState> device_;
     Definitions definitions_;
@@ -91,17 +131,22 @@ protected:
     cl_uint mode_;
     std::size_t node_bytes_;
     std::uint64_t capacity_nodes_ = 0;
+    std::uint64_t stored_ = 0;
     cl_uint shard_bits_ = 0;
     cl_uint slots_ = 0;
+    Slice slice_;
+    bool open_ = false;  ///< for inserts
     Memory heads_;
     Memory nodes_;
     Memory shards_;
+    Shards counters_;  ///< of the last pass
+    Arrival reading_;  ///< what a review waits for: the last reading of the pass
 };
 
 /// The lowest bad cell, if there is one.
 [[nodiscard]] inline std::optional<std::uint64_t> bad_cell(const cellist_findings& findings) {
-    if (findings.first_bad_cell == CELLIST_NONE) return {};
-    return findings.first_bad_cell;
+    if (findings.bad_cell_from_end == 0) return {};
+    return CELLIST_NONE - findings.bad_cell_from_end;
 }
 
 /// The storage that the options name, with empty lists. Throws Error if a size exceeds a limit.

@@ -19,10 +19,10 @@ CountedStorage::CountedStorage(std::shared_ptr<DeviceState> device, const Defini
 void CountedStorage::clear() {
     fill_heads(0);
     clear_counters();
-    kept_ = 0;
+    stored_ = 0;
 }
 
-void CountedStorage::begin_pass() {
+void CountedStorage::prepare_pass() {
     if (!counted_) {
         clear();
         mode_ = CELLIST_COUNTING;
@@ -32,75 +32,125 @@ void CountedStorage::begin_pass() {
     }
 }
 
-bool CountedStorage::end_pass(BuildReport& report) {
+bool CountedStorage::finish_pass() {
     mode_ = CELLIST_CONTIGUOUS;
-    const Counters counters = read_counters();
-    if (!counted_) {
-        counters_ = counters;
-        place_lists(report);
-        counted_ = true;
+    if (counted_) {
+        reading_ = find_unfilled(filled_);
+        reading_ = read_counters(counters_);
         return false;
     }
-    update(report, counters, kept_);
-    check_repeats(counters);
+    scan_.sum(heads_.cl(), CELLIST_NONE);
+    reading_ = scan_.read_later(demand_);
+    reading_ = read_counters(counting_);
+    if (options_.overflow != Overflow::drop) return false;
+    // The pool is what it is: no need to look at the counts first.
+    scan_.write_offsets(heads_.cl(), capacity_nodes_);
+    counted_ = true;
     return true;
 }
 
-/// After the counting pass: makes room for all records, or decides which cells go short.
-void CountedStorage::place_lists(BuildReport& report) {
-    const CellScan::Sums sums = scan_.sums(heads_.cl(), CELLIST_NONE);
-    demand_ = sums.total + counters_.dropped;
-    kept_ = std::min(sums.total, capacity_nodes_);
-    update(report, counters_, kept_);
-    report.dropped = demand_ - kept_;
-    report.attempted = demand_ + counters_.rejected;
-    if (kept_ < demand_ && options_.overflow != Overflow::drop) {
-        require(demand_, report);
-        if (counters_.dropped > 0)
+bool CountedStorage::review_pass(BuildReport& report) {
+    const Counters counting = sum(counting_);
+    const std::uint64_t demand = demand_.sum + counting.dropped;
+    const std::uint64_t kept = std::min<std::uint64_t>(demand_.sum, capacity_nodes_);
+    if (!counted_) {
+        update(report, counting, kept);
+        report.dropped = demand - kept;
+        report.attempted = demand + counting.rejected;
+        make_room(report);
+        counted_ = true;
+        return false;
+    }
+    const Counters filled = sum(counters_);
+    update(report, filled, kept);
+    const std::uint64_t unfilled = filled_.found.unfilled;
+    if (unfilled > 0 || filled.dropped != demand - kept || filled.rejected != counting.rejected)
+        throw Error("the kernel inserted " +
+                    std::to_string(kept - unfilled + filled.dropped + filled.rejected) +
+                    " records when it filled the lists, and " +
+                    std::to_string(demand + counting.rejected) +
+                    " or others when it counted them: it must insert the same records every time, "
+                    "or use Storage::linked");
+    return true;
+}
+
+/// After the counting pass: room for all records, and the places of their lists.
+void CountedStorage::make_room(const BuildReport& report) {
+    if (report.dropped > 0) {
+        const std::uint64_t demand = report.stored + report.dropped;
+        require(demand, report);
+        if (demand > demand_.sum)
             throw OverflowError("a list of more than " + std::to_string(CELLIST_CELL_COUNT_MAX) +
                                     " records is over the limit of Storage::counted",
                                 report);
-        allocate_pool(demand_);
-        kept_ = demand_;
+        allocate_pool(demand);
     }
-    scan_.write_offsets(heads_.cl(), sums, capacity_nodes_);
+    scan_.write_offsets(heads_.cl(), capacity_nodes_);
 }
 
-void CountedStorage::check_repeats(const Counters& filled) {
-    const std::uint64_t unfilled = validate().lost_nodes;
-    if (unfilled == 0 && filled.dropped == demand_ - kept_ && filled.rejected == counters_.rejected)
-        return;
-    throw Error(
-        "the kernel inserted " +
-        std::to_string(kept_ - unfilled + filled.dropped + filled.rejected) +
-        " records when it filled the lists, and " + std::to_string(demand_ + counters_.rejected) +
-        " or others when it counted them: it must insert the same records every time, or use "
-        "Storage::linked");
+void CountedStorage::make_whole(bool without_pool) {
+    counted_ = false;
+    mode_ = CELLIST_CONTIGUOUS;
+    if (without_pool || !has_pool()) allocate_pool(0);
 }
 
-Validation CountedStorage::validate() {
+std::uint64_t CountedStorage::nodes_for(std::uint64_t total, std::uint64_t, std::uint64_t) const {
+    return total;
+}
+
+void CountedStorage::reserve(std::uint64_t total, std::uint64_t) {
+    if (options_.overflow == Overflow::grow && capacity_nodes_ < total) allocate_pool(total);
+}
+
+std::vector<cl_uint> CountedStorage::counts(BuildReport& report) {
+    reading_.wait();
+    const Counters counting = sum(counting_);
+    update(report, counting, 0);
+    report.dropped += demand_.sum;
+    report.attempted += demand_.sum;
+    std::vector<cl_uint> words(heads_.size_bytes() / sizeof(cl_uint));
+    heads_.read(words.data(), heads_.size_bytes());
+    words.erase(words.begin(), words.begin() + counts_at());
+    return words;
+}
+
+cl::Event CountedStorage::find_unfilled(Findings& findings) {
     if (!validate_)
         validate_.emplace(kernel("cellist_validate_contiguous", kernels::validate_contiguous_cl));
     Arguments arguments;
     add_to(arguments);
-    const cellist_findings found = findings(*validate_, arguments);
-    // Sound lists that do not add up to what was stored have a wrong end; counts that do not add up to
-    // what was stored and dropped are wrong.
-    const std::uint64_t missing = kept_ > found.nodes ? kept_ - found.nodes : found.nodes - kept_;
-    const CellScan::Sums inserted = scan_.sums(heads_.cl(), CELLIST_NONE);
-    const std::uint64_t counted = inserted.total + found.unfilled;
-    const std::uint64_t expected = kept_ + read_counters().dropped;
-    // Counts end at their limit, where what was dropped goes on.
-    const bool wrong_counts =
-        inserted.longest < CELLIST_CELL_COUNT_MAX ? counted != expected : counted > expected;
-    return {found.broken == 0 && wrong_counts ? std::uint64_t{1} : found.broken, 0,
-            found.unfilled + (found.broken == 0 ? missing : 0), bad_cell(found)};
+    return find(findings, *validate_, arguments);
 }
 
-void CountedStorage::recover(bool without_pool) {
-    counted_ = false;
-    mode_ = CELLIST_CONTIGUOUS;
-    if (without_pool || !has_pool()) allocate_pool(0);
+std::function<Validation()> CountedStorage::validate() {
+    struct Check {
+        Findings findings;
+        CellScan::Totals inserted;
+        Shards shards;
+        Arrival done;
+    };
+    const auto check = std::make_shared<Check>();
+    check->done = find_unfilled(check->findings);
+    scan_.sum(heads_.cl(), CELLIST_NONE);
+    check->done = scan_.read_later(check->inserted);
+    check->done = read_counters(check->shards);
+    return [check, kept = stored_] {
+        check->done.wait();
+        // Sound lists that do not add up to what was stored have a wrong end; counts that do not add
+        // up to what was stored and dropped are wrong.
+        const cellist_findings& found = check->findings.found;
+        const Counters counters = sum(check->shards);
+        const std::uint64_t missing = kept > found.nodes ? kept - found.nodes : found.nodes - kept;
+        const std::uint64_t counted = check->inserted.sum + found.unfilled;
+        const std::uint64_t expected = kept + counters.dropped;
+        // Counts end at their limit, where what was dropped goes on.
+        const bool wrong_counts = check->inserted.longest < CELLIST_CELL_COUNT_MAX
+                                      ? counted != expected
+                                      : counted > expected;
+        return Validation{found.broken == 0 && wrong_counts ? std::uint64_t{1} : found.broken, 0,
+                          found.unfilled + (found.broken == 0 ? missing : 0), counters.late,
+                          bad_cell(found)};
+    };
 }
 
 }  // namespace cellist::detail

@@ -17,10 +17,11 @@ FixedStorage::FixedStorage(std::shared_ptr<DeviceState> device, const Definition
     clear();
 }
 
-/// Nodes of all cells together; more than any device has where the product exceeds 64 bits.
+/// Nodes of all cells of the slice together; more than any device has where the product exceeds 64
+/// bits.
 std::uint64_t FixedStorage::nodes_with(std::uint64_t slots) const {
     if (slots > CELLIST_CAPACITY_NODES_MAX) return ~std::uint64_t{0} / node_bytes_;
-    return slots * shape_.cells();
+    return slots * slice_.cells;
 }
 
 void FixedStorage::set_slots(std::uint64_t slots) {
@@ -35,43 +36,77 @@ void FixedStorage::clear() {
     stored_ = 0;
 }
 
-bool FixedStorage::end_pass(BuildReport& report) {
-    const Counters counters = read_counters();
-    const CellScan::Sums sums = scan_.sums(heads_.cl(), slots_);
-    stored_ = sums.total;
-    update(report, counters, sums.total);
-    if (counters.dropped == 0 || options_.overflow == Overflow::drop) return true;
-
-    if (options_.overflow == Overflow::stop)
-        throw OverflowError(
-            std::to_string(slots_) + " slots for each cell are too few for a list of " +
-                std::to_string(sums.longest) + " records: raise slots or use Overflow::grow",
-            report);
-    if (const auto reason = refusal(nodes_with(sums.longest)))
-        throw OverflowError("the longest list has " + std::to_string(sums.longest) +
-                                " records, and so many slots for each of " +
-                                std::to_string(shape_.cells()) +
-                                " cells are too many (use Storage::linked or counted): " + *reason,
-                            report);
-    set_slots(sums.longest);
+bool FixedStorage::finish_pass() {
+    scan_.sum(heads_.cl(), slots_);
+    reading_ = scan_.read_later(in_slots_);
+    reading_ = read_counters(counters_);
     return false;
 }
 
-void FixedStorage::recover(bool without_pool) {
-    if (without_pool || !has_pool()) set_slots(0);
+bool FixedStorage::review_pass(BuildReport& report) {
+    const Counters counters = sum(counters_);
+    update(report, counters, in_slots_.sum);
+    if (counters.dropped == 0 || options_.overflow == Overflow::drop) return true;
+
+    const std::uint64_t longest = in_slots_.longest;
+    if (options_.overflow == Overflow::stop)
+        throw OverflowError(
+            std::to_string(slots_) + " slots for each cell are too few for a list of " +
+                std::to_string(longest) + " records: raise slots or use Overflow::grow",
+            report);
+    if (const auto reason = refusal(nodes_with(longest)))
+        throw OverflowError("the longest list has " + std::to_string(longest) +
+                                " records, and so many slots for each of " +
+                                std::to_string(slice_.cells) +
+                                " cells are too many (use Storage::linked or counted): " + *reason,
+                            report);
+    set_slots(longest);
+    return false;
 }
 
-Validation FixedStorage::validate() {
-    // The counts are all that says which slots are in use: they must add up to what was stored and
-    // to what was dropped.
-    const std::uint64_t stored = scan_.sums(heads_.cl(), slots_).total;
-    const CellScan::Sums demand = scan_.sums(heads_.cl(), CELLIST_NONE);
-    const std::uint64_t lost = stored > stored_ ? stored - stored_ : stored_ - stored;
-    const std::uint64_t over = demand.total - stored;
-    const std::uint64_t dropped = read_counters().dropped;
-    // Counts end at their limit, where what was dropped goes on.
-    const bool sound = demand.longest < CELLIST_CELL_COUNT_MAX ? over == dropped : over <= dropped;
-    return {sound ? std::uint64_t{0} : std::uint64_t{1}, 0, lost, {}};
+void FixedStorage::make_whole(bool without_pool) {
+    if (without_pool || !has_pool() || capacity_nodes_ < nodes_with(slots_)) set_slots(0);
+}
+
+void FixedStorage::set_slice(const Slice& slice) {
+    ListStorage::set_slice(slice);
+    if (capacity_nodes_ < nodes_with(slots_)) slots_ = 0;
+}
+
+std::uint64_t FixedStorage::nodes_for(std::uint64_t, std::uint64_t longest,
+                                      std::uint64_t cells) const {
+    return (options_.overflow == Overflow::grow ? longest : slots_) * cells;
+}
+
+void FixedStorage::reserve(std::uint64_t, std::uint64_t longest) {
+    if (options_.overflow == Overflow::grow && slots_ < longest) set_slots(longest);
+}
+
+std::function<Validation()> FixedStorage::validate() {
+    struct Check {
+        CellScan::Totals in_slots, all;
+        Shards shards;
+        Arrival done;
+    };
+    const auto check = std::make_shared<Check>();
+    scan_.sum(heads_.cl(), slots_);
+    check->done = scan_.read_later(check->in_slots);
+    scan_.sum(heads_.cl(), CELLIST_NONE);
+    check->done = scan_.read_later(check->all);
+    check->done = read_counters(check->shards);
+    return [check, expected = stored_] {
+        check->done.wait();
+        // The counts are all that says which slots are in use: they must add up to what was stored
+        // and to what was dropped.
+        const std::uint64_t stored = check->in_slots.sum;
+        const std::uint64_t lost = stored > expected ? stored - expected : expected - stored;
+        const std::uint64_t over = check->all.sum - stored;
+        const Counters counters = sum(check->shards);
+        // Counts end at their limit, where what was dropped goes on.
+        const bool sound = check->all.longest < CELLIST_CELL_COUNT_MAX ? over == counters.dropped
+                                                                       : over <= counters.dropped;
+        return Validation{sound ? std::uint64_t{0} : std::uint64_t{1}, 0, lost, counters.late, {}};
+    };
 }
 
 }  // namespace cellist::detail

@@ -26,10 +26,16 @@ LinkedStorage::LinkedStorage(std::shared_ptr<DeviceState> device, const Definiti
 void LinkedStorage::clear() {
     fill_heads(CELLIST_NONE);
     clear_counters();
+    stored_ = 0;
 }
 
-bool LinkedStorage::end_pass(BuildReport& report) {
-    const Counters counters = read_counters();
+bool LinkedStorage::finish_pass() {
+    reading_ = read_counters(counters_);
+    return false;
+}
+
+bool LinkedStorage::review_pass(BuildReport& report) {
+    const Counters counters = sum(counters_);
     update(report, counters, counters.allocated);
     if (counters.dropped == 0 || options_.overflow == Overflow::drop) return true;
 
@@ -39,21 +45,43 @@ bool LinkedStorage::end_pass(BuildReport& report) {
     return false;
 }
 
-void LinkedStorage::recover(bool without_pool) {
+void LinkedStorage::make_whole(bool without_pool) {
     if (without_pool || !has_pool()) allocate_pool(0);
 }
 
-Validation LinkedStorage::validate() {
+std::uint64_t LinkedStorage::nodes_for(std::uint64_t total, std::uint64_t, std::uint64_t) const {
+    return total;
+}
+
+void LinkedStorage::reserve(std::uint64_t total, std::uint64_t) {
+    if (options_.overflow == Overflow::grow && capacity_nodes_ < total) allocate_pool(total);
+}
+
+std::function<Validation()> LinkedStorage::validate() {
+    struct Check {
+        Memory reached;
+        Findings findings;
+        Shards shards;
+        Arrival done;
+    };
+    const auto check = std::make_shared<Check>();
     constexpr cl_uint zero = 0;
-    Memory reached(device_, (capacity_nodes_ + 31) / 32, sizeof(cl_uint), "validation buffer");
-    reached.fill(&zero, sizeof zero, reached.size_bytes());
+    check->reached = Memory(device_, (capacity_nodes_ + 31) / 32, sizeof zero, "validation buffer");
+    check->reached.fill(&zero, sizeof zero, check->reached.size_bytes());
     if (!validate_)
         validate_.emplace(kernel("cellist_validate_linked", kernels::validate_linked_cl));
     Arguments arguments;
     add_to(arguments);
-    arguments.add(reached.cl());
-    const cellist_findings found = findings(*validate_, arguments);
-    return {found.broken, found.repeated, read_counters().allocated - found.nodes, bad_cell(found)};
+    arguments.add(check->reached.cl());
+    check->done = find(check->findings, *validate_, arguments);
+    check->done = read_counters(check->shards);
+    return [check] {
+        check->done.wait();
+        const cellist_findings& found = check->findings.found;
+        const Counters counters = sum(check->shards);
+        return Validation{found.broken, found.repeated, counters.allocated - found.nodes,
+                          counters.late, bad_cell(found)};
+    };
 }
 
 }  // namespace cellist::detail

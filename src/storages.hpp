@@ -13,12 +13,16 @@ public:
     LinkedStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
                   const Shape& shape, const ListsOptions& options);
     void clear() override;
-    void begin_pass() override { clear(); }
-    bool end_pass(BuildReport& report) override;
-    void recover(bool without_pool) override;
-    Validation validate() override;
+    std::function<Validation()> validate() override;
+    std::uint64_t nodes_for(std::uint64_t total, std::uint64_t longest,
+                            std::uint64_t cells) const override;
+    void reserve(std::uint64_t total, std::uint64_t longest) override;
 
 private:
+    bool finish_pass() override;
+    bool review_pass(BuildReport& report) override;
+    void make_whole(bool without_pool) override;
+
     std::optional<Kernel> validate_;
 };
 
@@ -29,21 +33,30 @@ public:
                    const Shape& shape, const ListsOptions& options);
     void clear() override;
     void start() override { counted_ = false; }
-    void begin_pass() override;
-    bool end_pass(BuildReport& report) override;
-    void recover(bool without_pool) override;
-    Validation validate() override;
+    std::function<Validation()> validate() override;
+    std::uint64_t nodes_for(std::uint64_t total, std::uint64_t longest,
+                            std::uint64_t cells) const override;
+    void reserve(std::uint64_t total, std::uint64_t longest) override;
+
+    /// What the counting pass counted: records of each cell, all of them dropped by the report.
+    /// Follows end_pass(). Blocks.
+    [[nodiscard]] std::vector<cl_uint> counts(BuildReport& report);
 
 private:
-    void place_lists(BuildReport& report);
-    void check_repeats(const Counters& filled);
+    void prepare_pass() override;
+    bool finish_pass() override;
+    bool review_pass(BuildReport& report) override;
+    void make_whole(bool without_pool) override;
+
+    void make_room(const BuildReport& report);
+    cl::Event find_unfilled(Findings& findings);
     [[nodiscard]] cl_uint counts_at() const { return static_cast<cl_uint>(shape_.cells() + 1); }
 
     CellScan scan_;
-    bool counted_ = false;      ///< the next pass fills
-    Counters counters_;         ///< of the counting pass
-    std::uint64_t demand_ = 0;  ///< records that the counting pass saw inside the shape
-    std::uint64_t kept_ = 0;    ///< those of them that fit
+    bool counted_ = false;  ///< the next pass fills
+    Shards counting_;       ///< counters of the counting pass
+    CellScan::Totals demand_;
+    Findings filled_;  ///< of the filling pass
     std::optional<Kernel> validate_;
 };
 
@@ -53,17 +66,22 @@ public:
     FixedStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
                  const Shape& shape, const ListsOptions& options);
     void clear() override;
-    void begin_pass() override { clear(); }
-    bool end_pass(BuildReport& report) override;
-    void recover(bool without_pool) override;
-    Validation validate() override;
+    std::function<Validation()> validate() override;
+    void set_slice(const Slice& slice) override;
+    std::uint64_t nodes_for(std::uint64_t total, std::uint64_t longest,
+                            std::uint64_t cells) const override;
+    void reserve(std::uint64_t total, std::uint64_t longest) override;
 
 private:
+    bool finish_pass() override;
+    bool review_pass(BuildReport& report) override;
+    void make_whole(bool without_pool) override;
+
     void set_slots(std::uint64_t slots);
     [[nodiscard]] std::uint64_t nodes_with(std::uint64_t slots) const;
 
     CellScan scan_;
-    std::uint64_t stored_ = 0;  ///< records that the last build left in the lists
+    CellScan::Totals in_slots_;  ///< of the last pass: records in slots, longest list
 };
 
 }  // namespace cellist::detail

@@ -91,31 +91,27 @@ TEST_CASE("cleared lists are empty and keep their capacity") {
     REQUIRE(lists.download().records().empty());
 }
 
-TEST_CASE("inserts outside of a build add to lists that have room") {
+TEST_CASE("inserts outside of a build are refused, and validate() counts them") {
+    CELLIST_EACH_STORAGE(storage);
     CELLIST_RANDOM(random, 9u);
-    Lists<Item> lists(device(), {50}, {.storage = Storage::linked});
+    Lists<Item> lists(device(), {50}, {.storage = storage});
     Inserter inserter(lists);
-    Inserts<Item> inserts = random_inserts(144, 50, random);
+    const Inserts<Item> inserts = random_inserts(144, 50, random);
     inserter.build(lists, inserts);
-    inserter.run(lists, inserts);
-    Oracle<Item> oracle = oracle_of(inserts, 50);
-    oracle.merge(oracle_of(inserts, 50));
-    require_sound(lists, 288);
-    require_same(lists.download(), oracle);
-}
+    inserter.run(lists, random_inserts(93, 50, random));
+    Inserts<Item> outside;
+    outside.add(50, {});
+    inserter.run(lists, outside);
 
-TEST_CASE("inserts outside of a build leave lists that have no room as they are") {
-    const Storage storage = GENERATE(Storage::counted, Storage::fixed);
-    INFO("storage " << name_of(storage));
-    CELLIST_RANDOM(random, 11u);
-    Lists<Item> lists(device(), {50}, {.storage = storage, .slots = 1});
-    Inserter inserter(lists);
-    Inserts<Item> inserts;
-    for (cl_uint cell = 0; cell < 50; ++cell) inserts.add(cell, {0.0f, cell});
-    inserter.build(lists, inserts);
-    inserter.run(lists, random_inserts(144, 60, random));
-    require_sound(lists, 50);
     require_same(lists.download(), oracle_of(inserts, 50));
+    const Validation validation = lists.validate();
+    REQUIRE_FALSE(validation.ok());
+    REQUIRE(validation.late_inserts == 93);
+    REQUIRE(validation.broken_links + validation.repeated_nodes + validation.lost_nodes == 0);
+    REQUIRE(validation.message() == "93 inserts outside of a build were refused");
+
+    require_complete(inserter.build(lists, inserts), 144);
+    require_sound(lists, 144);
 }
 
 }  // namespace

@@ -38,6 +38,27 @@ TEST_CASE("packed lists are those of the download, sorted or not") {
     }
 }
 
+TEST_CASE("a member is packed alone") {
+    CELLIST_EACH_STORAGE(storage);
+    CELLIST_RANDOM(random, 213u);
+    Lists<Item> lists(device(), {16, 9}, {.storage = storage});
+    Inserter(lists).build(lists, random_inserts(4096, 144, random));
+    lists.sort(&Item::id);
+    const HostLists<Item> host = lists.download();
+    const Packed<cl_float> keys = lists.pack(&Item::key);
+    const Packed<cl_uint> ids = lists.pack(&Item::id);
+    const std::vector<cl_uint> offsets = keys.offsets.download();
+    REQUIRE(
+        std::equal(offsets.begin(), offsets.end(), host.offsets().begin(), host.offsets().end()));
+    REQUIRE(ids.offsets.download() == offsets);
+    const std::vector<cl_float> found_keys = keys.records.download();
+    const std::vector<cl_uint> found_ids = ids.records.download();
+    REQUIRE(found_keys.size() == 4096);
+    REQUIRE(found_ids.size() == 4096);
+    for (std::size_t i = 0; i < 4096; ++i)
+        REQUIRE(host.records()[i] == Item{found_keys[i], found_ids[i]});
+}
+
 TEST_CASE("packed lists that are mostly empty keep their places") {
     CELLIST_EACH_STORAGE(storage);
     CELLIST_RANDOM(random, 211u);

@@ -1,11 +1,17 @@
 #pragma once
 
+#include <memory>
 #include <span>
+#include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
+#include <cellist/detail/arrival.hpp>
 #include <cellist/detail/memory.hpp>
 #include <cellist/device.hpp>
+#include <cellist/error.hpp>
+#include <cellist/pending.hpp>
 
 namespace cellist {
 
@@ -35,6 +41,30 @@ public:
         std::vector<T> elements(size_);
         memory_.read(elements.data(), size_ * sizeof(T));
         return elements;
+    }
+
+    /// The same without blocking.
+    [[nodiscard]] Pending<std::vector<T>> download_async() const {
+        struct State {
+            std::vector<T> elements;
+            detail::Arrival done;
+        };
+        const auto state = std::make_shared<State>();
+        state->elements.resize(size_);
+        state->done = memory_.read_later(state->elements.data(), size_ * sizeof(T));
+        return {state->done.event(), [state] {
+                    state->done.wait();
+                    return std::move(state->elements);
+                }};
+    }
+
+    /// Copies `elements` to the first of the buffer. They must stay until the event has completed.
+    /// Throws Error if they are more than size(). Does not block.
+    cl::Event upload_async(std::span<const T> elements) {
+        if (elements.size() > size_)
+            throw Error("a buffer of " + std::to_string(size_) + " elements has no room for " +
+                        std::to_string(elements.size()));
+        return memory_.write_later(elements.data(), elements.size_bytes());
     }
 
     /// Sets every element to `value`. Blocks only where sizeof(T) is no power of two up to 128.

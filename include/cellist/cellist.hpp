@@ -8,6 +8,7 @@
 #include <cellist/kernel.hpp>
 #include <cellist/lists.hpp>
 #include <cellist/options.hpp>
+#include <cellist/pending.hpp>
 #include <cellist/range.hpp>
 #include <cellist/report.hpp>
 #include <cellist/shape.hpp>

@@ -45,8 +45,9 @@ public:
     /// selector, without regard to case. Throws Error, listing the devices, if there is none.
     [[nodiscard]] static Device choose(std::string_view selector);
 
-    /// Works on the caller's own context and queue. The queue must be in order; its events have
-    /// times if it was made with CL_QUEUE_PROFILING_ENABLE.
+    /// Works on the caller's own context and queue. In an out-of-order queue, every command of the
+    /// library starts after all that were enqueued before it, the caller's too. Events have times if
+    /// the queue was made with CL_QUEUE_PROFILING_ENABLE.
     Device(cl::Context context, cl::CommandQueue queue);
 
     Device(Device&&) noexcept;
@@ -65,6 +66,12 @@ public:
 
     /// Blocks until everything that was enqueued has run.
     void finish() const;
+
+    /// What is enqueued from now on starts after these events, of any queue of the context, have
+    /// completed. Does not block.
+    void enqueue_wait(const std::vector<cl::Event>& events) const;
+    /// An event that completes when everything that was enqueued has run. Does not block.
+    [[nodiscard]] cl::Event enqueue_marker() const;
 
     /// @private
     [[nodiscard]] const std::shared_ptr<detail::DeviceState>& state() const { return state_; }

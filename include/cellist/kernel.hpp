@@ -44,11 +44,12 @@ public:
     Kernel& operator=(const Kernel&) = delete;
     ~Kernel();
 
-    /// Enqueues the kernel over a range. Does not block. Kernels that insert run inside of build():
-    /// elsewhere, what they insert is not reported, and dropped where no node is free. Arguments in the kernel's order: scalars,
-    /// adapted structs, Buffer, Lists, cl::Buffer, cl::Image, cl::Sampler, LocalMemory. Throws Error
-    /// if their number, or the kind, size or type of one does not fit the kernel's parameters; signs
-    /// and the widths of vectors are not compared.
+    /// Enqueues the kernel over a range. Does not block. Kernels insert inside of build() only:
+    /// elsewhere containers are read-only, and Lists::validate() counts the inserts that were refused.
+    ///
+    /// Arguments in the kernel's order: scalars, adapted structs, Buffer, Lists, cl::Buffer, cl::Image,
+    /// cl::Sampler, LocalMemory. Throws Error if their number, or the kind, size or type of one does
+    /// not fit the kernel's parameters; signs and the widths of vectors are not compared.
     template <class... Args>
     cl::Event run(const Range& range, const Args&... args) {
         detail::Arguments arguments;

@@ -4,25 +4,28 @@
 #include <array>
 #include <concepts>
 #include <cstdint>
-#include <limits>
-#include <optional>
+#include <functional>
+#include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
+#include <cellist/detail/arrival.hpp>
 #include <cellist/detail/lists_core.hpp>
 #include <cellist/device.hpp>
 #include <cellist/host_lists.hpp>
 #include <cellist/kernel.hpp>
 #include <cellist/options.hpp>
+#include <cellist/pending.hpp>
 #include <cellist/report.hpp>
 #include <cellist/shape.hpp>
 #include <cellist/struct.hpp>
 
 namespace cellist {
 
-/// The lists of all cells in device memory, one behind the other: the records of cell c are
-/// records[offsets[c]] ... records[offsets[c + 1] - 1].
+/// The lists of all cells in device memory, one behind the other: the records of cell c, or a member
+/// of each, are records[offsets[c]] ... records[offsets[c + 1] - 1].
 template <class T>
 struct Packed {
     Buffer<cl_uint> offsets;  ///< cells + 1
@@ -45,7 +48,13 @@ public:
     /// Empty lists. Throws Error if the shape or the capacity exceeds a limit of the device or of
     /// the budget.
     Lists(const Device& device, const Shape& shape, const ListsOptions& options = {})
-        : core_(device.state(), detail::definitions_of<T>(), shape, options) {}
+        : core_(std::make_shared<detail::ListsCore>(device.state(), detail::definitions_of<T>(),
+                                                    shape, options)) {}
+    Lists(Lists&&) noexcept = default;
+    Lists& operator=(Lists&&) noexcept = default;
+    Lists(const Lists&) = delete;
+    Lists& operator=(const Lists&) = delete;
+    ~Lists() = default;
 
     /// Fills the lists anew: clears them, then runs `kernel(lists, args...)` over `range`. The lists
     /// are the kernel's first parameters; `args` are the rest.
@@ -62,12 +71,45 @@ public:
     /// The same for several inserting kernels: `insert` enqueues all of them with Kernel::run, and is
     /// called again after the pool has grown.
     BuildReport build(std::invocable auto&& insert) {
-        detail::ListsCore* core = &core_;
-        return detail::ListsCore::build({&core, 1}, insert).front();
+        return finish(*detail::ListsCore::start_build({core_.get()}, std::ref(insert)));
+    }
+
+    /// Starts the same and does not block. The event completes after the first pass; get() runs more
+    /// of them if the pool was too small, or throws. Until then the lists are incomplete, unless the
+    /// policy is Overflow::drop: whatever uses them calls get() itself, blocks and throws in its place.
+    /// The kernel and the arguments that are memory must stay until then.
+    template <class... Args>
+    [[nodiscard]] Pending<BuildReport> build_async(Kernel& kernel, const Range& range,
+                                                   const Args&... args) {
+        detail::Arguments rest;
+        (rest.add(args), ...);
+        return build_async([core = core_.get(), & kernel, range, rest = std::move(rest)] {
+            detail::Arguments arguments;
+            core->add_to(arguments);
+            arguments.append(rest);
+            kernel.enqueue(range, arguments);
+        });
+    }
+    [[nodiscard]] Pending<BuildReport> build_async(std::invocable auto&& insert) {
+        const auto build =
+            detail::ListsCore::start_build({core_.get()}, std::forward<decltype(insert)>(insert));
+        return {core_->marker(), [core = core_, build] { return finish(*build); }};
+    }
+
+    /// Builds lists that are more than the pool may hold (by the budget, by the device's largest
+    /// allocation, by capacity_nodes unless the policy is to grow), a range of cells at a time.
+    /// `insert` enqueues the kernels as in build(): once to count, then for each slice, of which it
+    /// stores the records. `read` is called for each slice, in order, with the lists of its cells in
+    /// place and all others empty. The kernels must insert the same records every time. At the end the
+    /// lists are empty. Throws OverflowError if a single list does not fit and the policy is not to
+    /// drop. Takes 8 bytes a cell for the counts. Blocks.
+    BuildReport build_slices(std::invocable auto&& insert,
+                             std::invocable<const Slice&> auto&& read) {
+        return core_->build_slices(std::ref(insert), std::ref(read));
     }
 
     /// Empties the lists; the pool keeps its capacity. Does not block.
-    void clear() { core_.clear(); }
+    void clear() { core_->clear(); }
 
     /// Sorts every list by a scalar member: cellist_for_each then visits the least first, or the
     /// greatest. Records with equal keys are ordered by their remaining members, ascending, in order
@@ -77,59 +119,113 @@ public:
     /// first call for a member compiles a kernel; does not block otherwise.
     template <class M>
     cl::Event sort(M T::*member, Order order = Order::ascending) {
-        return core_.sort("record." + detail::member_name(member), order);
+        return core_->sort("record." + detail::member_name(member), order);
     }
 
     /// The same by an OpenCL C expression of `record`, of integer or float type, such as
     /// "record.x * record.x + record.y * record.y". Throws OpenClError where it does not compile.
     cl::Event sort_by(const std::string& expression, Order order = Order::ascending) {
-        return core_.sort(expression, order);
+        return core_->sort(expression, order);
     }
 
     /// How long the lists are. Blocks.
-    [[nodiscard]] Lengths lengths() const { return core_.lengths(); }
+    [[nodiscard]] Lengths lengths() const { return lengths_async().get(); }
+    /// The same without blocking.
+    [[nodiscard]] Pending<Lengths> lengths_async() const {
+        struct State {
+            std::vector<cl_uint> lengths;
+            detail::Arrival done;
+        };
+        const auto state = std::make_shared<State>();
+        state->done = core_->read_lengths(state->lengths);
+        return {state->done.event(), [state] {
+                    state->done.wait();
+                    return Lengths(state->lengths);
+                }};
+    }
 
     /// A copy of all lists in host memory. Blocks.
-    [[nodiscard]] HostLists<T> download() const {
-        std::vector<T> records;
-        auto offsets = core_.download([&records](std::uint64_t count) -> void* {
-            records.resize(count);
-            return records.data();
+    [[nodiscard]] HostLists<T> download() const { return download_async().get(); }
+    /// The same without blocking where the records take up to 256 MiB.
+    [[nodiscard]] Pending<HostLists<T>> download_async() const {
+        struct State {
+            std::vector<cl_uint> offsets;
+            std::vector<T> records;
+            detail::Arrival done;
+        };
+        const auto state = std::make_shared<State>();
+        core_->download(state->done, state->offsets, [&](std::uint64_t count) -> void* {
+            state->records.resize(count);
+            return state->records.data();
         });
-        return {shape(), std::move(offsets), std::move(records)};
+        return {state->done.event(), [state, shape = shape()] {
+                    state->done.wait();
+                    return HostLists<T>(shape, {state->offsets.begin(), state->offsets.end()},
+                                        std::move(state->records));
+                }};
     }
 
     /// A copy of all lists in device memory, one behind the other, for kernels that leave the
-    /// container. Blocks until it knows the size.
+    /// container. Does not block.
     [[nodiscard]] Packed<T> pack() const {
-        Packed<T> packed{{core_.device(), shape().cells() + 1}, {core_.device(), 0}};
-        core_.pack(packed.offsets.cl(), [&](std::uint64_t count) {
-            packed.records = Buffer<T>(core_.device(), count);
-            return packed.records.cl();
-        });
-        return packed;
+        return pack<T>(DeviceType<T>::name(), "record");
+    }
+    /// The same of a single member: an array of its own where a reader needs only the key.
+    template <class M>
+    [[nodiscard]] Packed<M> pack(M T::*member) const {
+        static_assert(detail::KnownOnDevice<M>, "pack scalars, vectors and adapted structs");
+        return pack<M>(DeviceType<M>::name(), "record." + detail::member_name(member));
     }
 
     /// Checks that every allocated node is reached from exactly one head, exactly once. Finds any
     /// corruption of heads and links in time proportional to cells + nodes. Takes one bit of device
-    /// memory a node. Sums are compared with those of the last build: a kernel that inserted outside
-    /// of one shows as an error in Storage::fixed. Blocks.
-    [[nodiscard]] Validation validate() const { return core_.validate(); }
+    /// memory a node. Sums are compared with those of the last build; inserts outside of one are
+    /// counted. Blocks.
+    [[nodiscard]] Validation validate() const { return core_->validate()(); }
+    /// The same without blocking.
+    [[nodiscard]] Pending<Validation> validate_async() const {
+        std::function<Validation()> result = core_->validate();
+        return {core_->marker(), std::move(result)};
+    }
 
-    [[nodiscard]] const Shape& shape() const { return core_.shape(); }
+    [[nodiscard]] const Shape& shape() const { return core_->shape(); }
     /// Nodes in the pool.
-    [[nodiscard]] std::uint64_t capacity_nodes() const { return core_.capacity_nodes(); }
+    [[nodiscard]] std::uint64_t capacity_nodes() const { return core_->capacity_nodes(); }
     /// Device memory of heads, nodes and counters.
-    [[nodiscard]] std::uint64_t pool_bytes() const { return core_.pool_bytes(); }
+    [[nodiscard]] std::uint64_t pool_bytes() const { return core_->pool_bytes(); }
 
     /// @private
-    [[nodiscard]] const detail::ListsCore& core() const { return core_; }
-    /// @private
-    [[nodiscard]] detail::ListsCore& core() { return core_; }
+    [[nodiscard]] detail::ListsCore& core() const { return *core_; }
 
 private:
-    detail::ListsCore core_;
+    static const BuildReport& finish(detail::Build& build) {
+        return detail::ListsCore::finish(build).front();
+    }
+    template <class V>
+    Packed<V> pack(const std::string& type, const std::string& value) const {
+        Packed<V> packed{{core_->device(), shape().cells() + 1}, {core_->device(), 0}};
+        const auto allocate = [&](std::uint64_t count) {
+            packed.records = Buffer<V>(core_->device(), count);
+            return packed.records.cl();
+        };
+        core_->pack(packed.offsets.cl(), allocate, type, value);
+        return packed;
+    }
+
+    std::shared_ptr<detail::ListsCore> core_;
 };
+
+namespace detail {
+
+template <std::size_t count>
+std::array<BuildReport, count> reports(Build& build) {
+    std::array<BuildReport, count> result;
+    const std::vector<BuildReport>& all = ListsCore::finish(build);
+    std::copy(all.begin(), all.end(), result.begin());
+    return result;
+}
+
+}  // namespace detail
 
 /// Fills several containers at once: `insert` enqueues the kernels that fill them with Kernel::run, and
 /// is called again when one of the pools has grown. A report for each container, in order. After an
@@ -140,11 +236,19 @@ private:
 template <class... T>
     requires(sizeof...(T) > 0)
 std::array<BuildReport, sizeof...(T)> build(std::invocable auto&& insert, Lists<T>&... lists) {
-    const std::array<detail::ListsCore*, sizeof...(T)> cores{&lists.core()...};
-    const std::vector<BuildReport> reports = detail::ListsCore::build(cores, insert);
-    std::array<BuildReport, sizeof...(T)> result;
-    std::copy(reports.begin(), reports.end(), result.begin());
-    return result;
+    return detail::reports<sizeof...(T)>(
+        *detail::ListsCore::start_build({&lists.core()...}, std::ref(insert)));
+}
+
+/// Starts the same and does not block; see Lists::build_async.
+template <class... T>
+    requires(sizeof...(T) > 0)
+[[nodiscard]] Pending<std::array<BuildReport, sizeof...(T)>> build_async(
+    std::invocable auto&& insert, Lists<T>&... lists) {
+    const auto build =
+        detail::ListsCore::start_build({&lists.core()...}, std::forward<decltype(insert)>(insert));
+    return {std::get<0>(std::tie(lists...)).core().marker(),
+            [build] { return detail::reports<sizeof...(T)>(*build); }};
 }
 
 }  // namespace cellist

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace cellist {
 
@@ -18,8 +19,18 @@ struct BuildReport {
                                        ///< more after growing
 };
 
+/// The cells that have lists while a build in slices reads them: first_cell ... first_cell + cells - 1.
+struct Slice {
+    std::uint64_t first_cell;
+    std::uint64_t cells;
+};
+
 /// How long the lists are.
 struct Lengths {
+    Lengths() = default;
+    /// Of lists with these lengths.
+    explicit Lengths(const std::vector<std::uint32_t>& lengths);
+
     /// Cells by the length of their list; no entry where no list has a length.
     std::map<std::uint64_t, std::uint64_t> histogram;
     std::uint64_t longest = 0;         ///< nodes in the longest list
@@ -32,12 +43,14 @@ struct Validation {
     std::uint64_t broken_links = 0;    ///< links, offsets or counts that lead outside of the lists
     std::uint64_t repeated_nodes = 0;  ///< links to a node that is in a list already: cycles, too
     std::uint64_t lost_nodes = 0;      ///< nodes that no list leads to, or that were never written
+    std::uint64_t late_inserts =
+        0;  ///< inserts outside of a build since the lists were cleared: refused
     /// Lowest cell that shows one of these. None where all is well, or where only sums differ.
     std::optional<std::uint64_t> first_bad_cell;
 
-    /// True if every stored node is in exactly one list, exactly once.
+    /// True if every stored node is in exactly one list, exactly once, and every insert was in a build.
     [[nodiscard]] bool ok() const {
-        return broken_links == 0 && repeated_nodes == 0 && lost_nodes == 0;
+        return broken_links == 0 && repeated_nodes == 0 && lost_nodes == 0 && late_inserts == 0;
     }
     /// One line for people.
     [[nodiscard]] std::string message() const;

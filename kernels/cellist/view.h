@@ -50,6 +50,8 @@ typedef struct cellist_view {
     CELLIST_UINT shard_bits;      // the counters have 2^shard_bits shards
     CELLIST_UINT mode;            // one of the modes above
     CELLIST_UINT slots;           // nodes of each cell in mode FIXED
+    CELLIST_UINT first_cell;      // of the cells that have lists now: 0 but in a build in slices
+    CELLIST_UINT open_cells;      // cells from the first on that take inserts: 0 outside of a build
 } cellist_view;
 
 // The counters of one shard, alone in its cache line. The struct behind the last shard holds the
@@ -61,16 +63,18 @@ typedef struct cellist_shard {
     CELLIST_UINT rejected_low;  // inserts into cells outside the shape, 64 bits in two words
     CELLIST_UINT rejected_high;
     CELLIST_UINT pool_full;  // behind the last shard: not 0 once every shard was seen full
-    CELLIST_UINT padding[10];
+    CELLIST_UINT late_low;   // inserts outside of a build, 64 bits in two words
+    CELLIST_UINT late_high;
+    CELLIST_UINT padding[8];
 } cellist_shard;
 
-// What a validation finds; each of its kernels says which of these it counts.
+// What a validation finds, from 0; each of its kernels says which of these it counts.
 typedef struct cellist_findings {
     CELLIST_UINT broken;
     CELLIST_UINT repeated;
     CELLIST_UINT unfilled;
     CELLIST_UINT nodes;
-    CELLIST_UINT first_bad_cell;
+    CELLIST_UINT bad_cell_from_end;  // CELLIST_NONE less the lowest cell that is bad, or 0
 } cellist_findings;
 
 #endif

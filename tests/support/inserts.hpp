@@ -83,7 +83,7 @@ public:
         return lists.build(kernel_, Range::padded(count, 64), cells, records, count);
     }
 
-    /// Enqueues the inserts without a build: they add to what is in the lists.
+    /// Enqueues the inserts alone, for a build of several kernels, and waits for them.
     void run(Lists<T>& lists, const Inserts<T>& inserts) {
         const Buffer<cl_uint> cells(device_, inserts.cells);
         const Buffer<T> records(device_, inserts.records);

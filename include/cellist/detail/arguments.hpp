@@ -75,6 +75,16 @@ public:
         arguments_.push_back({kind, offset, size, {}, false});
     }
 
+    /// The arguments of another launch behind these.
+    void append(const Arguments& others) {
+        for (Argument argument : others.arguments_) {
+            argument.offset += bytes_.size();
+            arguments_.push_back(std::move(argument));
+        }
+        bytes_.insert(bytes_.end(), others.bytes_.begin(), others.bytes_.end());
+        modes_ |= others.modes_;
+    }
+
     /// The nodes of a container of records of this type.
     void add_nodes(const cl::Buffer& nodes, const std::string& record) {
         add(nodes);

@@ -4,10 +4,10 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
+#include <cellist/detail/arrival.hpp>
 #include <cellist/detail/memory.hpp>
 #include <cellist/detail/record_type.hpp>
 #include <cellist/kernel.hpp>
@@ -17,65 +17,97 @@
 
 namespace cellist::detail {
 
+class Build;
+class CellScan;
 class ListStorage;
 
 /// Lists without the record's C++ type: a storage, and the kernels that read and sort any storage.
-/// The kernels see the record by its name in OpenCL C.
+/// The kernels see the record by its name in OpenCL C. Stays where it is: a build that is pending
+/// refers to it.
 class ListsCore {
 public:
     ListsCore(std::shared_ptr<DeviceState> device, Definitions definitions, const Shape& shape,
               const ListsOptions& options);
-    ListsCore(ListsCore&&) noexcept;
-    ListsCore& operator=(ListsCore&&) noexcept;
+    ListsCore(const ListsCore&) = delete;
+    ListsCore& operator=(const ListsCore&) = delete;
     ~ListsCore();
 
-    /// Builds all containers at once: `insert` runs the kernels that fill them. A report each.
-    static std::vector<BuildReport> build(std::span<ListsCore* const> containers,
-                                          const std::function<void()>& insert);
+    /// Enqueues a build of all containers at once: `insert` runs the kernels that fill them.
+    static std::shared_ptr<Build> start_build(std::vector<ListsCore*> containers,
+                                              std::function<void()> insert);
+    /// The rest of a build: a report for each container. Blocks.
+    static const std::vector<BuildReport>& finish(Build& build);
+
+    /// Builds a range of cells at a time, and calls `read` for each.
+    BuildReport build_slices(const std::function<void()>& insert,
+                             const std::function<void(const Slice&)>& read);
+
     void clear();
     cl::Event sort(const std::string& key, Order order);
-    [[nodiscard]] Lengths lengths() const;
-    [[nodiscard]] Validation validate() const;
+    [[nodiscard]] std::function<Validation()> validate() const;
 
-    /// Calls `allocate` with the number of records, writes the records to where it points, and
-    /// returns the offset of each cell's first record and the end.
-    [[nodiscard]] std::vector<std::uint64_t> download(
-        const std::function<void*(std::uint64_t)>& allocate) const;
+    /// Enqueues the reading of every list's length; `lengths` has them when the event has completed.
+    cl::Event read_lengths(std::vector<cl_uint>& lengths) const;
 
-    /// Writes cells + 1 offsets, calls `allocate` with the number of records, and copies the lists to
-    /// the buffer that it returns, one behind the other.
-    void pack(const cl::Buffer& offsets,
-              const std::function<cl::Buffer(std::uint64_t)>& allocate) const;
+    /// Enqueues the reading of all lists: cells + 1 offsets, and where `allocate` says, given their
+    /// number, the records. Blocks only where they are too many to be copied at once.
+    void download(Arrival& done, std::vector<cl_uint>& offsets,
+                  const std::function<void*(std::uint64_t)>& allocate) const;
+
+    /// Enqueues the writing of cells + 1 offsets, calls `allocate` with the number of records, and
+    /// enqueues the copy of a value of each record, of an OpenCL C type, to the buffer that it
+    /// returns, one list behind the other.
+    void pack(const cl::Buffer& offsets, const std::function<cl::Buffer(std::uint64_t)>& allocate,
+              const std::string& type, const std::string& value) const;
 
     [[nodiscard]] const Shape& shape() const { return shape_; }
     [[nodiscard]] std::uint64_t capacity_nodes() const;
     [[nodiscard]] std::uint64_t pool_bytes() const;
     [[nodiscard]] const std::shared_ptr<DeviceState>& device() const { return device_; }
+    [[nodiscard]] const std::string& record() const { return definitions_.records.back().name; }
     /// The mode in which the lists are read, as in view.h.
     [[nodiscard]] unsigned mode() const;
 
-    /// Adds what CELLIST_LISTS declares.
+    /// Adds what CELLIST_LISTS declares. Blocks for a pending build that may still change the lists.
     void add_to(Arguments& arguments) const;
 
-private:
+    /// Completes when all that was enqueued has.
+    [[nodiscard]] cl::Event marker() const;
+    /// Ends a pending build. Throws what it throws.
+    void settle() const;
+
+    // For Build.
+    [[nodiscard]] ListStorage& storage() const { return *storage_; }
+    void set_pending(std::shared_ptr<Build> build) { pending_ = std::move(build); }
     void empty_after_failure(bool without_pool) noexcept;
+
+private:
     Kernel& kernel(const std::string& name, std::string_view source,
-                   const std::string& key_function = {}) const;
+                   const std::string& definitions = {}) const;
     [[nodiscard]] Range cell_range() const;
-    struct Offsets {
-        Memory words;
-        std::uint64_t total;
-    };
     [[nodiscard]] Memory device_lengths(std::uint64_t at) const;
-    [[nodiscard]] Offsets device_offsets() const;
-    void gather(std::uint64_t begin, std::uint64_t end, const Offsets& offsets,
-                const cl::Buffer& records) const;
+    [[nodiscard]] Memory device_offsets() const;
+    void gather(std::uint64_t begin, std::uint64_t end, const Memory& offsets,
+                const cl::Buffer& values, const std::string& type, const std::string& value) const;
+    [[nodiscard]] std::vector<cl_uint> count(const std::function<void()>& insert,
+                                             BuildReport& report);
+    struct PlannedSlice {
+        Slice range;
+        std::uint64_t total;    ///< records of all cells
+        std::uint64_t longest;  ///< records of one cell
+    };
+    [[nodiscard]] PlannedSlice plan_slice(std::uint64_t first,
+                                          const std::vector<cl_uint>& counts) const;
 
     std::shared_ptr<DeviceState> device_;
     Definitions definitions_;
     Shape shape_;
+    ListsOptions options_;
     std::unique_ptr<ListStorage> storage_;
-    mutable std::map<std::string, Kernel> kernels_;  ///< the library's, by name and key
+    std::shared_ptr<Build> pending_;  ///< a build that is not finished yet
+    bool reading_slice_ = false;
+    mutable std::map<std::string, Kernel> kernels_;  ///< the library's, by name and definitions
+    mutable std::unique_ptr<CellScan> scan_;
 };
 
 }  // namespace cellist::detail

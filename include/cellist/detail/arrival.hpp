@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cellist/error.hpp>
+#include <cellist/opencl.hpp>
+
+namespace cellist::detail {
+
+/// Data on its way to or from host memory. Blocks at the end of its life until the memory is free:
+/// declare it behind the memory.
+class Arrival {
+public:
+    Arrival() = default;
+    Arrival(const Arrival&) = delete;
+    Arrival& operator=(const Arrival&) = delete;
+    ~Arrival() { settle(); }
+
+    /// Waits for this event too. Events of a queue in order: the last stands for all.
+    Arrival& operator=(cl::Event event) {
+        event_ = std::move(event);
+        return *this;
+    }
+    [[nodiscard]] const cl::Event& event() const { return event_; }
+
+    /// Blocks until all has arrived.
+    void wait() const {
+        const cl_int code = event_() == nullptr ? CL_SUCCESS : clWaitForEvents(1, &event_());
+        if (code != CL_SUCCESS) throw OpenClError("clWaitForEvents", code);
+    }
+    /// The same where nobody asks for the data any more.
+    void settle() noexcept {
+        if (event_() != nullptr) clWaitForEvents(1, &event_());
+        event_ = cl::Event();
+    }
+
+private:
+    cl::Event event_;
+};
+
+}  // namespace cellist::detail

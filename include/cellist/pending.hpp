@@ -1,0 +1,44 @@
+#pragma once
+
+#include <functional>
+#include <utility>
+
+#include <cellist/error.hpp>
+#include <cellist/opencl.hpp>
+
+namespace cellist {
+
+/// A result of type T that the device is working on. Movable, not copyable.
+template <class T>
+class Pending {
+public:
+    /// @private
+    Pending(cl::Event event, std::function<T()> result)
+        : event_(std::move(event)), result_(std::move(result)) {}
+    Pending(Pending&&) noexcept = default;
+    Pending& operator=(Pending&&) noexcept = default;
+    Pending(const Pending&) = delete;
+    Pending& operator=(const Pending&) = delete;
+    ~Pending() = default;
+
+    /// Completes when the device has done what was enqueued.
+    [[nodiscard]] const cl::Event& event() const { return event_; }
+
+    /// Whether get() would find the device done. Does not block.
+    [[nodiscard]] bool ready() const {
+        cl_int status = CL_QUEUED;
+        const cl_int code = clGetEventInfo(event_(), CL_EVENT_COMMAND_EXECUTION_STATUS,
+                                           sizeof status, &status, nullptr);
+        if (code != CL_SUCCESS) throw OpenClError("clGetEventInfo", code);
+        return status <= CL_COMPLETE;
+    }
+
+    /// The result, once. Throws what the blocking call throws. Blocks.
+    T get() { return std::exchange(result_, nullptr)(); }
+
+private:
+    cl::Event event_;
+    std::function<T()> result_;
+};
+
+}  // namespace cellist

@@ -1,0 +1,111 @@
+#include "build.hpp"
+
+#include <optional>
+
+#include <cellist/detail/lists_core.hpp>
+
+namespace cellist::detail {
+
+namespace {
+
+/// Builds in which the demand grows with every pass end here: the kernel does not repeat itself.
+constexpr std::uint32_t passes_max = 8;
+
+}  // namespace
+
+/// Runs a part of the build; whatever goes wrong in it leaves all containers empty.
+template <class Step>
+void Build::guarded(Step step) {
+    try {
+        step();
+    } catch (const OpenClError& error) {
+        // A driver may find out only now that it has no memory for a pool it had granted.
+        fail(error.code() == CL_MEM_OBJECT_ALLOCATION_FAILURE ||
+             error.code() == CL_OUT_OF_RESOURCES || error.code() == CL_OUT_OF_HOST_MEMORY);
+        throw;
+    } catch (...) {
+        fail(false);
+        throw;
+    }
+}
+
+/// `without_pool` gives the nodes' memory back; the next build grows anew.
+void Build::fail(bool without_pool) noexcept {
+    finished_ = true;
+    error_ = std::current_exception();
+    for (ListsCore* container : containers_) container->empty_after_failure(without_pool);
+}
+
+void Build::enqueue() {
+    for (std::size_t i = 0; i < containers_.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if (containers_[i] == containers_[j])
+                throw Error("a build names the same container twice");
+    for (ListsCore* container : containers_) container->settle();
+    reports_.resize(containers_.size());
+    guarded([&] {
+        for (ListsCore* container : containers_) container->storage().start();
+        enqueue_passes();
+    });
+    for (ListsCore* container : containers_) container->set_pending(shared_from_this());
+}
+
+/// Enqueues a pass, and more of them where a container needs no look at the counters in between.
+void Build::enqueue_passes() {
+    bool another = true;
+    while (another) {
+        ++passes_;
+        for (ListsCore* container : containers_) container->storage().begin_pass();
+        insert_();
+        another = false;
+        for (ListsCore* container : containers_)
+            if (container->storage().end_pass()) another = true;
+    }
+}
+
+void Build::run_to_end() {
+    for (;;) {
+        std::optional<std::size_t> incomplete;
+        for (std::size_t i = 0; i < containers_.size(); ++i) {
+            reports_[i].passes = passes_;
+            if (!containers_[i]->storage().review(reports_[i])) incomplete = i;
+        }
+        if (!incomplete) return;
+        if (passes_ >= passes_max)
+            throw OverflowError("the kernel inserted more records in each of " +
+                                    std::to_string(passes_max) +
+                                    " passes: it must insert the same records every time",
+                                reports_[*incomplete]);
+        enqueue_passes();
+    }
+}
+
+const std::vector<BuildReport>& Build::finish() {
+    if (!finished_) {
+        const auto self = shared_from_this();
+        for (ListsCore* container : containers_) container->set_pending(nullptr);
+        guarded([&] { run_to_end(); });
+        finished_ = true;
+    }
+    if (error_) std::rethrow_exception(error_);
+    return reports_;
+}
+
+void Build::abandon() noexcept {
+    if (finished_) return;
+    finished_ = true;
+    const auto self = shared_from_this();
+    error_ = std::make_exception_ptr(Error("the lists went before their build was finished"));
+    for (ListsCore* container : containers_) {
+        container->set_pending(nullptr);
+        container->empty_after_failure(false);
+    }
+}
+
+bool Build::may_change() const {
+    for (const ListsCore* container : containers_)
+        if (container->storage().may_grow()) return true;
+    return false;
+}
+
+}  // namespace cellist::detail
