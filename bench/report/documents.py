@@ -16,7 +16,8 @@ TABLES = {
     "summary": tables.summary_as_markdown,
     "ratios": tables.ratios_as_markdown,
     "conditions": tables.conditions_as_markdown,
-    "times": tables.ceilings_as_markdown,
+    "times": tables.times_as_markdown,
+    "plots": tables.plots_as_markdown,
 }
 _BLOCK = re.compile(r"(<!-- results: (\w+) -->\n)(.*?)(<!-- end of results -->)", re.DOTALL)
 
@@ -24,16 +25,16 @@ _BLOCK = re.compile(r"(<!-- results: (\w+) -->\n)(.*?)(<!-- end of results -->)"
 def _contents():
     """What each generated file should hold, by path."""
     paths = sorted((ROOT / "bench/results").glob("*.json"))
-    runs = [figures.load(path) for path in paths]
+    runs = [{**figures.load(path), "file": path.stem} for path in paths]
     runs.sort(key=lambda results: results["kind"] != "gpu")
     contents = {}
     for name in DOCUMENTS:
         path = ROOT / name
         text = path.read_text(encoding="utf-8")
         contents[path] = _BLOCK.sub(lambda block: block[1] + TABLES[block[2]](runs) + "\n" + block[4], text)
-    for path in paths:
-        for plot, svg in plots.draw(figures.load(path)).items():
-            contents[ROOT / f"docs/images/bench-{path.stem}-{plot}.svg"] = svg
+    for results in runs:
+        for plot, svg in plots.draw(results).items():
+            contents[ROOT / f"docs/images/bench-{results['file']}-{plot}.svg"] = svg
     return contents
 
 

@@ -130,19 +130,33 @@ def summary_as_markdown(all_results):
     return "\n".join([head, "|---|" + "---|" * len(all_results), *rows])
 
 
-def ceilings_as_markdown(all_results):
-    """Ceilings, and the operations beside them, in GB/s and M nodes/s."""
-    lines = ["| base workload, random cells | " + " | ".join(device_title(r) for r in all_results) + " |",
+def times_as_markdown(all_results):
+    """Ceilings and operations on random cells: time, rate, and part of the rate of a copy."""
+    lines = ["| random cells | " + " | ".join(device_title(r) for r in all_results) + " |",
              "|---|" + "---|" * len(all_results)]
+
+    def add(title, figures):
+        def cell(figure):
+            if not figure:
+                return "–"
+            text = f"{figure['time_ms']:.3g} ms, {figure['nodes_per_s'] / 1e6:,.0f} M/s"
+            return text + (f", {figure['of_copy']:.2f}" if "of_copy" in figure else "")
+        if any(figures):
+            lines.append(f"| {title} | " + " | ".join(map(cell, figures)) + " |")
+
     for operation in ("copy", "store", "exchange", "exchange_and_store"):
-        figures = [_base(r, "ceiling", operation=operation, distribution="random") for r in all_results]
-        cells = [f"{f['time_ms']:.3g} ms, {f['bytes_per_s'] / 1e9:,.0f} GB/s" if f else "–" for f in figures]
-        lines.append(f"| ceiling: {operation.replace('_', ' ')} | " + " | ".join(cells) + " |")
-    for name in ("insert", "build", "read", "sort", "nearest", "pack"):
+        add(f"ceiling: {operation.replace('_', ' ')}",
+            [_base(r, "ceiling", operation=operation, distribution="random") for r in all_results])
+    for name in ("insert", "build", "read", "sort", "nearest", "pack", "clear"):
         for storage in ("linked", "counted", "fixed"):
-            figures = [_base(r, name, storage=storage, allocation=None, distribution="random") for r in all_results]
-            if not any(figures):
-                continue
-            cells = [f"{f['time_ms']:.3g} ms, {f['nodes_per_s'] / 1e6:,.0f} M/s" if f else "–" for f in figures]
-            lines.append(f"| {name}, {storage} | " + " | ".join(cells) + " |")
+            add(f"{name}, {storage}",
+                [_base(r, name, storage=storage, allocation=None, distribution="random") for r in all_results])
     return "\n".join(lines)
+
+
+def plots_as_markdown(all_results):
+    """The plots of each run, as they are named under docs/images."""
+    titles = {"throughput": "throughput against size", "ceiling": "inserts against the ceiling",
+              "crossover": "the fastest storage"}
+    return "\n\n".join(f"![{device_title(results)}: {title}](images/bench-{results['file']}-{plot}.svg)"
+                       for results in all_results for plot, title in titles.items())

@@ -15,8 +15,8 @@ struct Expected {
 /// Computed once for each workload.
 [[nodiscard]] const Expected& expected(const Workload& workload);
 
-/// For each cell the sum of the digests of the `k` records with the least keys.
-[[nodiscard]] std::vector<cl_uint> expected_nearest(const Workload& workload, cl_uint k);
+/// For each cell the sum of the digests of the `k` records with the least keys. Computed once, too.
+[[nodiscard]] const std::vector<cl_uint>& expected_nearest(const Workload& workload, cl_uint k);
 
 /// Throws std::runtime_error, naming the first cell that differs, unless the digests are the
 /// expected ones.

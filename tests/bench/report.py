@@ -168,7 +168,9 @@ class Presentation(unittest.TestCase):
         self.assertIn("**0.50 missed**", tables.ratios_as_markdown([self.results]))
 
     def test_tables_have_a_column_for_each_run(self):
-        for table in documents.TABLES.values():
+        for name, table in documents.TABLES.items():
+            if name == "plots":
+                continue
             widths = {line.count("|") for line in table([self.results, self.results]).splitlines()}
             self.assertEqual(len(widths), 1)
 
