@@ -46,9 +46,11 @@ class _Panel:
         self.bits = range(min(int(math.log2(n)) for n, _ in points), max(int(math.log2(n)) for n, _ in points) + 1)
         values = [value for _, value in points]
         if logarithmic:
-            self.low = math.floor(math.log10(min(values)))
-            self.high = max(math.ceil(math.log10(max(values))), self.low + 1)
-            ticks = [(exponent, f"{10.0 ** exponent:g}") for exponent in range(self.low, self.high + 1)]
+            steps = [mantissa * 10.0 ** exponent for exponent in range(-6, 9) for mantissa in (1, 2, 5)]
+            first = max(step for step in steps if step <= min(values))
+            last = min(step for step in steps if step > max(values))
+            ticks = [(math.log10(step), f"{step:,.10g}") for step in steps if first <= step <= last]
+            self.low, self.high = math.log10(first), math.log10(last)
         else:
             self.low, self.high = 0, max(1.25, math.ceil(4 * max(values)) / 4)
             ticks = [(i / 4, f"{i / 4:g}") for i in range(int(4 * self.high) + 1)]
@@ -131,7 +133,7 @@ def crossover(results):
     width, height, left, top = 84, 22, 240, 88
     rows = sorted(grid, key=lambda key: (DISTRIBUTIONS.index(key[0]), key[1]))
     parts = [_text(16, 24, f"The fastest storage: {device_title(results)}", size=15),
-             _text(left, 46, "build and how many reads of all lists; the next best takes so many times as long")]
+             _text(left, 46, "a build and so many reads of all lists; the numbers say how many times as long the next best takes")]
     for index, storage in enumerate(STORAGES):
         parts += [f'<rect x="{left + 130 * index}" y="54" width="12" height="12" fill="{COLOURS[index]}"/>',
                   _text(left + 130 * index + 18, 64, storage)]
