@@ -1,17 +1,8 @@
 #include "build.hpp"
 
-#include <optional>
-
 #include <cellist/detail/lists_core.hpp>
 
 namespace cellist::detail {
-
-namespace {
-
-/// Builds in which the demand grows with every pass end here: the kernel does not repeat itself.
-constexpr std::uint32_t passes_max = 8;
-
-}  // namespace
 
 /// Runs a part of the build; whatever goes wrong in it leaves all containers empty.
 template <class Step>
@@ -65,17 +56,12 @@ void Build::enqueue_passes() {
 
 void Build::run_to_end() {
     for (;;) {
-        std::optional<std::size_t> incomplete;
+        bool complete = true;
         for (std::size_t i = 0; i < containers_.size(); ++i) {
             reports_[i].passes = passes_;
-            if (!containers_[i]->storage().review(reports_[i])) incomplete = i;
+            if (!containers_[i]->storage().review(reports_[i])) complete = false;
         }
-        if (!incomplete) return;
-        if (passes_ >= passes_max)
-            throw OverflowError("the kernel inserted more records in each of " +
-                                    std::to_string(passes_max) +
-                                    " passes: it must insert the same records every time",
-                                reports_[*incomplete]);
+        if (complete) return;
         enqueue_passes();
     }
 }

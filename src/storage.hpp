@@ -32,7 +32,7 @@ public:
 
     /// A build is start(), then passes until review() says that the lists are complete; see build.cpp.
     /// More passes may follow, where another container needs them: they fill the lists anew.
-    virtual void start() {}
+    void start();
     /// Enqueues what the next run of the kernels needs; from now on kernels may insert. Does not
     /// block.
     void begin_pass();
@@ -89,6 +89,7 @@ protected:
                 const Shape& shape, const ListsOptions& options, cl_uint mode,
                 std::size_t node_bytes, std::uint64_t head_words);
 
+    virtual void start_anew() {}
     virtual void prepare_pass() { clear(); }
     virtual bool finish_pass() = 0;
     virtual bool review_pass(BuildReport& report) = 0;
@@ -101,18 +102,23 @@ protected:
     /// Makes a pool of this capacity; the nodes of the old one are gone. Throws Error.
     void allocate_pool(std::uint64_t capacity_nodes);
     [[nodiscard]] bool has_pool() const { return nodes_.cl()() != nullptr; }
+    /// allocate_pool() for what a build demands. Throws OverflowError where builds demand more in every
+    /// pass: the kernel does not repeat itself.
+    void grow_pool(std::uint64_t capacity_nodes, const BuildReport& report);
     /// Enqueues the reading of the counters: they are there when the event has completed.
     [[nodiscard]] cl::Event read_counters(Shards& shards) const;
     [[nodiscard]] static Counters sum(const Shards& shards);
     void clear_counters();
     /// Sets the heads from a word on. Does not block.
-    void fill_heads(cl_uint value, std::uint64_t first_word = 0);
+    void fill_heads(cl_uint value, std::uint64_t first_word = 0,
+                    std::uint64_t words = ~std::uint64_t{0});
     /// A report of the counters.
     void update(BuildReport& report, const Counters& counters, std::uint64_t stored);
     /// Throws OverflowError if the policy or a limit forbids a pool of `demand` nodes.
     void require(std::uint64_t demand, const BuildReport& report) const;
     /// A kernel of the library for this record.
-    [[nodiscard]] Kernel kernel(const std::string& name, std::string_view source) const;
+    [[nodiscard]] Kernel kernel(const std::string& name, std::string_view source,
+                                cl_uint mode) const;
 
     /// What a validating kernel finds, on its way to the host.
     struct Findings {
@@ -134,6 +140,9 @@ protected:
     std::uint64_t stored_ = 0;
     cl_uint shard_bits_ = 0;
     cl_uint slots_ = 0;
+    cl_uint rank_member_ = 0;
+    cl_uint rank_words_ = 0;
+    std::uint32_t growths_ = 0;  ///< of this build
     Slice slice_;
     bool open_ = false;  ///< for inserts
     Memory heads_;

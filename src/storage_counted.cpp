@@ -83,7 +83,7 @@ void CountedStorage::make_room(const BuildReport& report) {
             throw OverflowError("a list of more than " + std::to_string(CELLIST_CELL_COUNT_MAX) +
                                     " records is over the limit of Storage::counted",
                                 report);
-        allocate_pool(demand);
+        grow_pool(demand, report);
     }
     scan_.write_offsets(heads_.cl(), capacity_nodes_);
 }
@@ -116,7 +116,8 @@ std::vector<cl_uint> CountedStorage::counts(BuildReport& report) {
 
 cl::Event CountedStorage::find_unfilled(Findings& findings) {
     if (!validate_)
-        validate_.emplace(kernel("cellist_validate_contiguous", kernels::validate_contiguous_cl));
+        validate_.emplace(
+            kernel("cellist_validate_contiguous", kernels::validate_contiguous_cl, mode_));
     Arguments arguments;
     add_to(arguments);
     return find(findings, *validate_, arguments);

@@ -60,7 +60,9 @@ bool FixedStorage::review_pass(BuildReport& report) {
                                 std::to_string(slice_.cells) +
                                 " cells are too many (use Storage::linked or counted): " + *reason,
                             report);
-    set_slots(longest);
+    slots_ = 0;
+    grow_pool(nodes_with(longest), report);
+    slots_ = static_cast<cl_uint>(longest);
     return false;
 }
 

@@ -167,9 +167,7 @@ public:
 
     /// A copy of all lists in device memory, one behind the other, for kernels that leave the
     /// container. Does not block.
-    [[nodiscard]] Packed<T> pack() const {
-        return pack<T>(DeviceType<T>::name(), "record");
-    }
+    [[nodiscard]] Packed<T> pack() const { return pack<T>(DeviceType<T>::name(), "record"); }
     /// The same of a single member: an array of its own where a reader needs only the key.
     template <class M>
     [[nodiscard]] Packed<M> pack(M T::*member) const {

@@ -37,10 +37,27 @@
 //   COUNTING    counts behind the offsets, as below         none: inserts only count
 //   CONTIGUOUS  cells + 1 offsets, then cells counts        record
 //   FIXED       cells: the inserts so far                   record
+//   RANKING     as below                                    none: inserts only rank their keys
+//   CHOOSING    the same                                    record, as in FIXED
+//
+// RANKING and CHOOSING find the K = slots records of each cell that come first. Their heads are rows
+// of `cells` words:
+//   counts     1   the records in the slots
+//   wanted     1   how many of the records that equal the thresholds are kept
+//   equals     1   how many of them there are
+//   least      K   the K least words of RANKING, ascending
+//   thresholds     one for each word of the key that was ranked
 #define CELLIST_LINKED 1u
 #define CELLIST_COUNTING 2u
 #define CELLIST_CONTIGUOUS 4u
 #define CELLIST_FIXED 8u
+#define CELLIST_RANKING 16u
+#define CELLIST_CHOOSING 32u
+
+// Rows of the heads in modes RANKING and CHOOSING.
+#define CELLIST_ROW_WANTED 1u
+#define CELLIST_ROW_EQUALS 2u
+#define CELLIST_ROW_LEAST 3u
 
 // Passed to kernels by value.
 typedef struct cellist_view {
@@ -52,6 +69,8 @@ typedef struct cellist_view {
     CELLIST_UINT slots;           // nodes of each cell in mode FIXED
     CELLIST_UINT first_cell;      // of the cells that have lists now: 0 but in a build in slices
     CELLIST_UINT open_cells;      // cells from the first on that take inserts: 0 outside of a build
+    CELLIST_UINT rank_member;     // of the record, that it is ranked by
+    CELLIST_UINT rank_words;      // words of the key that have thresholds
 } cellist_view;
 
 // The counters of one shard, alone in its cache line. The struct behind the last shard holds the
@@ -67,6 +86,12 @@ typedef struct cellist_shard {
     CELLIST_UINT late_high;
     CELLIST_UINT padding[8];
 } cellist_shard;
+
+// What a choice among the records of each cell finds, from 0.
+typedef struct cellist_choice {
+    CELLIST_UINT undecided;  // cells with more records that equal the thresholds than slots for them
+    CELLIST_UINT words;      // of a record's key
+} cellist_choice;
 
 // What a validation finds, from 0; each of its kernels says which of these it counts.
 typedef struct cellist_findings {
