@@ -45,7 +45,9 @@ std::vector<Workload> Suite::workloads() const {
 
 std::vector<Workload> Suite::workloads(double longest) const {
     std::vector<Workload> all = workloads();
-    std::erase_if(all, [&](const Workload& workload) { return workload.longest() > longest; });
+    std::erase_if(all, [&](const Workload& workload) {
+        return workload.longest() > longest || workload.nodes / 4 > nodes_;
+    });
     return all;
 }
 

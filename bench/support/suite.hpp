@@ -49,7 +49,8 @@ public:
     /// The base with each distribution; under full effort also with each size from 2^12 to 2^26, and,
     /// of random and coherent cells, with each size of a node and several occupancies.
     [[nodiscard]] std::vector<Workload> workloads() const;
-    /// Those in which no list is longer than this.
+    /// Those in which no list is longer than this, up to four times the base: for what walks lists, which
+    /// takes long at the largest sizes on a processor.
     [[nodiscard]] std::vector<Workload> workloads(double longest) const;
 
     /// Adds a case. `measure` sets up, checks the results once, and measures; what it throws makes the
