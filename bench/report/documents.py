@@ -32,7 +32,7 @@ def _contents():
         path = ROOT / name
         text = path.read_text(encoding="utf-8")
         contents[path] = _BLOCK.sub(lambda block: block[1] + TABLES[block[2]](runs) + "\n" + block[4], text)
-    for results in runs:
+    for results in tables.full_runs(runs):
         for plot, svg in plots.draw(results).items():
             contents[ROOT / f"docs/images/bench-{results['file']}-{plot}.svg"] = svg
     return contents

@@ -154,9 +154,14 @@ def times_as_markdown(all_results):
     return "\n".join(lines)
 
 
+def full_runs(all_results):
+    """Those that measured all sizes: plots of the others would show points."""
+    return [results for results in all_results if results["effort"] == "full"]
+
+
 def plots_as_markdown(all_results):
-    """The plots of each run, as they are named under docs/images."""
+    """The plots of each full run, as they are named under docs/images."""
     titles = {"throughput": "throughput against size", "ceiling": "inserts against the ceiling",
               "crossover": "the fastest storage"}
     return "\n\n".join(f"![{device_title(results)}: {title}](images/bench-{results['file']}-{plot}.svg)"
-                       for results in all_results for plot, title in titles.items())
+                         for results in full_runs(all_results) for plot, title in titles.items())

@@ -65,9 +65,10 @@ BENCH_FUNCTION bench_uint bench_cell(bench_uint i, bench_uint cells, bench_uint 
     }
 }
 
-// The j-th word of the i-th record. Word 0 is the key that lists are sorted by.
+// The j-th word of the i-th record. Word 0 is the key that lists are sorted by: no two are equal. Where
+// cells are random it costs nothing, being the hash that they are taken from.
 BENCH_FUNCTION bench_uint bench_word(bench_uint i, bench_uint j) {
-    return j == 0u ? bench_hash(~i) : i * (2u * j + 1u);
+    return j == 0u ? bench_hash(i) : i * (2u * j + 1u);
 }
 
 // What the j-th word of a record adds to the digest of its list.
