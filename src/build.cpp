@@ -24,7 +24,10 @@ void Build::guarded(Step step) {
 void Build::fail(bool without_pool) noexcept {
     finished_ = true;
     error_ = std::current_exception();
-    for (ListsCore* container : containers_) container->empty_after_failure(without_pool);
+    for (ListsCore* container : containers_) {
+        container->set_pending(nullptr);
+        container->empty_after_failure(without_pool);
+    }
 }
 
 void Build::enqueue() {
@@ -39,6 +42,12 @@ void Build::enqueue() {
         enqueue_passes();
     });
     for (ListsCore* container : containers_) container->set_pending(shared_from_this());
+}
+
+cl::Event Build::marker() {
+    cl::Event event;
+    guarded([&] { event = containers_.front()->marker(); });
+    return event;
 }
 
 /// Enqueues a pass, and more of them where a container needs no look at the counters in between.

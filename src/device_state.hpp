@@ -22,14 +22,19 @@ struct DeviceState {
     /// Completes when all that was enqueued has.
     [[nodiscard]] cl::Event marker() const;
 
-    /// The program with this source and these options; builds it the first time. Throws OpenClError
-    /// with the compiler's log. Any thread may call it.
-    cl::Program program(const std::string& source, const std::string& options);
+    /// The program with this source and these options; builds it the first time. It stays where it is.
+    /// Throws OpenClError with the compiler's log. Any thread may call it.
+    const cl::Program& program(const std::string& source, const std::string& options);
 
 private:
     std::mutex mutex_;
     std::unordered_map<std::string, cl::Program> programs_;  ///< by options and source
 };
+
+/// Throws OpenClError if a call of the C interface has failed.
+inline void check(const char* call, cl_int code) {
+    if (code != CL_SUCCESS) throw OpenClError(call, code);
+}
 
 /// Runs OpenCL calls and turns their failure into the library's error.
 template <class Call>

@@ -16,6 +16,7 @@ namespace cellist {
 namespace {
 
 using detail::Arguments;
+using detail::check;
 using detail::opencl;
 
 /// What a kernel expects as one parameter.
@@ -30,19 +31,22 @@ struct Parameter {
 /// Takes the library's own #include lines out of a source, since its text stands before it already,
 /// and keeps the line numbers.
 std::string without_library_includes(const std::string& text, bool& uses_glm) {
-    static const std::regex include(R"(^[ \t]*#[ \t]*include[ \t]*[<"]cellist/(\w+)\.clh[>"])",
-                                    std::regex::multiline);
+    static const std::regex include(
+        R"([ \t]*#[ \t]*include[ \t]*[<"]cellist/(lists|glm)\.clh[>"])");
     std::string out;
-    auto rest = text.begin();
-    for (std::sregex_iterator match(text.begin(), text.end(), include), end; match != end;
-         ++match) {
-        const std::string name = (*match)[1];
-        if (name != "lists" && name != "glm") continue;
-        uses_glm = uses_glm || name == "glm";
-        out.append(rest, (*match)[0].first);
-        rest = (*match)[0].second;
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t size = std::min(text.find('\n', begin), text.size() - 1) + 1 - begin;
+        std::string line = text.substr(begin, size);
+        begin += size;
+        std::smatch match;  // of few lines: regular expressions are slow
+        if (line.find("cellist/") != std::string::npos &&
+            std::regex_search(line, match, include, std::regex_constants::match_continuous)) {
+            uses_glm = uses_glm || match[1] == "glm";
+            line.erase(0, static_cast<std::size_t>(match.length()));
+        }
+        out += line;
     }
-    return out.append(rest, text.end());
+    return out;
 }
 
 /// A program's text, put together from parts, and which lines come from which.
@@ -126,8 +130,8 @@ std::string with_hints(std::string log) {
     return log;
 }
 
-cl::Program build(detail::DeviceState& device, const Source& source,
-                  const detail::Definitions& definitions, cl_uint modes) {
+const cl::Program& build(detail::DeviceState& device, const Source& source,
+                         const detail::Definitions& definitions, cl_uint modes) {
     if (source.text.empty()) throw Error("the source of " + source.file_name + " is empty");
     if (definitions.needs_fp64 && !device.info.fp64)
         throw Error("a struct has members of type double, which " + device.info.name +
@@ -165,10 +169,10 @@ std::size_t type_size(std::string name, const detail::Definitions& definitions) 
 
 std::string text_of(const cl::Kernel& kernel, cl_uint index, cl_kernel_arg_info what) {
     std::size_t size = 0;
-    if (clGetKernelArgInfo(kernel(), index, what, 0, nullptr, &size) != CL_SUCCESS) return {};
+    check("clGetKernelArgInfo", clGetKernelArgInfo(kernel(), index, what, 0, nullptr, &size));
     std::string text(size, '\0');
-    if (clGetKernelArgInfo(kernel(), index, what, size, text.data(), nullptr) != CL_SUCCESS)
-        return {};
+    check("clGetKernelArgInfo",
+          clGetKernelArgInfo(kernel(), index, what, size, text.data(), nullptr));
     return text.substr(0, text.find('\0'));
 }
 
@@ -260,6 +264,7 @@ cl::Kernel kernel_called(const cl::Program& program, const std::string& name,
     try {
         return {program, name.c_str()};
     } catch (const cl::Error& error) {
+        if (error.err() != CL_INVALID_KERNEL_NAME) throw;
         throw OpenClError(error.what(), error.err(),
                           source.file_name + " has no kernel called '" + name + "'");
     }
@@ -272,13 +277,14 @@ std::size_t written(const auto& list) {
     return list.size() - 3 * static_cast<std::size_t>(containers);
 }
 
+/// Null where there is no memory.
 cl_context context_of(const std::byte* memory_handle) {
     cl_mem memory = nullptr;
     std::memcpy(&memory, memory_handle, sizeof(cl_mem));
+    if (memory == nullptr) return nullptr;
     cl_context context = nullptr;
-    if (memory == nullptr || clGetMemObjectInfo(memory, CL_MEM_CONTEXT, sizeof(cl_context),
-                                                &context, nullptr) != CL_SUCCESS)
-        return nullptr;
+    check("clGetMemObjectInfo",
+          clGetMemObjectInfo(memory, CL_MEM_CONTEXT, sizeof(cl_context), &context, nullptr));
     return context;
 }
 
@@ -334,7 +340,7 @@ struct Kernel::Impl {
     /// The kernel for containers of these modes; builds it the first time.
     Variant& variant(cl_uint modes) {
         if (const auto known = variants.find(modes); known != variants.end()) return known->second;
-        const cl::Program program = build(*device, source, definitions, modes);
+        const cl::Program& program = build(*device, source, definitions, modes);
         return opencl([&]() -> Variant& {
             Variant made;
             made.kernel = kernel_called(program, name, source);

@@ -56,30 +56,41 @@ std::shared_ptr<Build> ListsCore::start_build(std::vector<ListsCore*> containers
     return build;
 }
 
+cl::Event ListsCore::marker(Build& build) { return build.marker(); }
 const std::vector<BuildReport>& ListsCore::finish(Build& build) { return build.finish(); }
 
-/// Leaves the lists empty, whatever failed before. `without_pool` gives the nodes' memory back; the
-/// next build grows anew.
+/// Leaves the lists empty, whatever failed before. `without_pool` gives the nodes' memory back, where
+/// the next build can grow anew.
 void ListsCore::empty_after_failure(bool without_pool) noexcept {
+    without_pool_ = without_pool || (broken_ && without_pool_);
+    broken_ = true;
     try {
-        storage_->recover(without_pool);
+        settle();
     } catch (...) {
-        // The device is lost; the error that is under way says why.
+        // The error that is under way says why. What comes next tries again.
     }
 }
 
 void ListsCore::settle() const {
     if (pending_) std::shared_ptr(pending_)->finish();
+    if (!broken_) return;
+    storage_->recover(without_pool_);
+    broken_ = false;
 }
 
 void ListsCore::add_to(Arguments& arguments) const {
-    if (pending_ && pending_->may_change()) settle();
+    if (!pending_ || pending_->may_change()) settle();
     storage_->add_to(arguments);
 }
 
 void ListsCore::clear() {
     settle();
-    storage_->clear();
+    try {
+        storage_->clear();
+    } catch (...) {
+        empty_after_failure(false);
+        throw;
+    }
 }
 
 std::function<Validation()> ListsCore::validate() const {
@@ -192,7 +203,7 @@ void ListsCore::download(Arrival& done, std::vector<cl_uint>& offsets,
 }
 
 void ListsCore::pack(const cl::Buffer& offsets,
-                     const std::function<cl::Buffer(std::uint64_t)>& allocate,
+                     const std::function<const cl::Buffer&(std::uint64_t)>& allocate,
                      const std::string& type, const std::string& value) const {
     const Memory words = device_offsets();
     opencl([&] {
@@ -234,15 +245,14 @@ BuildReport ListsCore::build_slices(const std::function<void()>& insert,
                                     const std::function<void(const Slice&)>& read) {
     settle();
     BuildReport all;
-    const std::vector<cl_uint> counts = count(insert, all);
-    const BuildReport counted =
-        std::exchange(all, {.attempted = all.attempted, .rejected = all.rejected, .passes = 1});
-    const auto whole = [this]() noexcept {
+    const auto take_all_cells = [this] {
         reading_slice_ = false;
         storage_->set_slice({0, shape_.cells()});
-        empty_after_failure(false);
     };
     try {
+        const std::vector<cl_uint> counts = count(insert, all);
+        const BuildReport counted =
+            std::exchange(all, {.attempted = all.attempted, .rejected = all.rejected, .passes = 1});
         for (std::uint64_t first = 0; first < shape_.cells();) {
             const PlannedSlice slice = plan_slice(first, counts);
             storage_->clear();
@@ -265,11 +275,13 @@ BuildReport ListsCore::build_slices(const std::function<void()>& insert,
             reading_slice_ = false;
             first += slice.range.cells;
         }
+        take_all_cells();
+        storage_->recover(false);
     } catch (...) {
-        whole();
+        take_all_cells();
+        empty_after_failure(false);
         throw;
     }
-    whole();
     return all;
 }
 

@@ -47,8 +47,8 @@ public:
 
     /// Blocks until nothing is on its way to this object's memory. Comes before the destructor.
     void settle() noexcept { reading_.settle(); }
-    /// Makes what a failed build may have left undone, with empty lists. The pool is empty afterwards
-    /// if there was none, or if `without_pool` says so.
+    /// Makes what a failed build may have left undone, with empty lists. A pool that grows is empty
+    /// afterwards if there was none, or if `without_pool` says so.
     void recover(bool without_pool);
 
     /// Looks for links, offsets and counts that do not belong together. The result may be asked for
@@ -101,7 +101,11 @@ protected:
     [[nodiscard]] std::optional<std::string> refusal(std::uint64_t capacity_nodes) const;
     /// Makes a pool of this capacity; the nodes of the old one are gone. Throws Error.
     void allocate_pool(std::uint64_t capacity_nodes);
-    [[nodiscard]] bool has_pool() const { return nodes_.cl()() != nullptr; }
+    /// Whether recover() leaves an empty pool. Under other policies than to grow, the pool stays the one
+    /// of the options, so that later builds hold as much.
+    [[nodiscard]] bool empties_pool(bool without_pool) const {
+        return options_.overflow == Overflow::grow && (without_pool || nodes_.cl()() == nullptr);
+    }
     /// allocate_pool() for what a build demands. Throws OverflowError where builds demand more in every
     /// pass: the kernel does not repeat itself.
     void grow_pool(std::uint64_t capacity_nodes, const BuildReport& report);

@@ -91,7 +91,7 @@ void CountedStorage::make_room(const BuildReport& report) {
 void CountedStorage::make_whole(bool without_pool) {
     counted_ = false;
     mode_ = CELLIST_CONTIGUOUS;
-    if (without_pool || !has_pool()) allocate_pool(0);
+    if (empties_pool(without_pool)) allocate_pool(0);
 }
 
 std::uint64_t CountedStorage::nodes_for(std::uint64_t total, std::uint64_t, std::uint64_t) const {

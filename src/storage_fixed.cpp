@@ -67,7 +67,7 @@ bool FixedStorage::review_pass(BuildReport& report) {
 }
 
 void FixedStorage::make_whole(bool without_pool) {
-    if (without_pool || !has_pool() || capacity_nodes_ < nodes_with(slots_)) set_slots(0);
+    if (empties_pool(without_pool) || capacity_nodes_ < nodes_with(slots_)) set_slots(0);
 }
 
 void FixedStorage::set_slice(const Slice& slice) {

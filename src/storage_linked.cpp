@@ -46,7 +46,7 @@ bool LinkedStorage::review_pass(BuildReport& report) {
 }
 
 void LinkedStorage::make_whole(bool without_pool) {
-    if (without_pool || !has_pool()) allocate_pool(0);
+    if (empties_pool(without_pool)) allocate_pool(0);
 }
 
 std::uint64_t LinkedStorage::nodes_for(std::uint64_t total, std::uint64_t, std::uint64_t) const {

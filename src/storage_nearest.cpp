@@ -112,13 +112,7 @@ bool NearestStorage::review_pass(BuildReport& report) {
     return false;
 }
 
-void NearestStorage::make_whole(bool) {
-    mode_ = CELLIST_FIXED;
-    if (!has_pool()) {
-        slots_ = 0;
-        allocate_pool(0);
-    }
-}
+void NearestStorage::make_whole(bool) { mode_ = CELLIST_FIXED; }
 
 std::uint64_t NearestStorage::nodes_for(std::uint64_t, std::uint64_t, std::uint64_t cells) const {
     return slots_ * cells;

@@ -7,7 +7,6 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -93,7 +92,8 @@ public:
     [[nodiscard]] Pending<BuildReport> build_async(std::invocable auto&& insert) {
         const auto build =
             detail::ListsCore::start_build({core_.get()}, std::forward<decltype(insert)>(insert));
-        return {core_->marker(), [core = core_, build] { return finish(*build); }};
+        return {detail::ListsCore::marker(*build),
+                [core = core_, build] { return finish(*build); }};
     }
 
     /// Builds lists that are more than the pool may hold (by the budget, by the device's largest
@@ -202,7 +202,7 @@ private:
     template <class V>
     Packed<V> pack(const std::string& type, const std::string& value) const {
         Packed<V> packed{{core_->device(), shape().cells() + 1}, {core_->device(), 0}};
-        const auto allocate = [&](std::uint64_t count) {
+        const auto allocate = [&](std::uint64_t count) -> const cl::Buffer& {
             packed.records = Buffer<V>(core_->device(), count);
             return packed.records.cl();
         };
@@ -245,7 +245,7 @@ template <class... T>
     std::invocable auto&& insert, Lists<T>&... lists) {
     const auto build =
         detail::ListsCore::start_build({&lists.core()...}, std::forward<decltype(insert)>(insert));
-    return {std::get<0>(std::tie(lists...)).core().marker(),
+    return {detail::ListsCore::marker(*build),
             [build] { return detail::reports<sizeof...(T)>(*build); }};
 }
 

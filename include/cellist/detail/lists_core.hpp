@@ -35,6 +35,8 @@ public:
     /// Enqueues a build of all containers at once: `insert` runs the kernels that fill them.
     static std::shared_ptr<Build> start_build(std::vector<ListsCore*> containers,
                                               std::function<void()> insert);
+    /// Completes after the first passes. The build has failed where this throws.
+    [[nodiscard]] static cl::Event marker(Build& build);
     /// The rest of a build: a report for each container. Blocks.
     static const std::vector<BuildReport>& finish(Build& build);
 
@@ -57,7 +59,8 @@ public:
     /// Enqueues the writing of cells + 1 offsets, calls `allocate` with the number of records, and
     /// enqueues the copy of a value of each record, of an OpenCL C type, to the buffer that it
     /// returns, one list behind the other.
-    void pack(const cl::Buffer& offsets, const std::function<cl::Buffer(std::uint64_t)>& allocate,
+    void pack(const cl::Buffer& offsets,
+              const std::function<const cl::Buffer&(std::uint64_t)>& allocate,
               const std::string& type, const std::string& value) const;
 
     [[nodiscard]] const Shape& shape() const { return shape_; }
@@ -73,7 +76,8 @@ public:
 
     /// Completes when all that was enqueued has.
     [[nodiscard]] cl::Event marker() const;
-    /// Ends a pending build. Throws what it throws.
+    /// Ends a pending build, and empties lists that a failure has left in no order. Throws what the
+    /// build throws, or what fails still.
     void settle() const;
 
     // For Build.
@@ -106,6 +110,8 @@ private:
     std::unique_ptr<ListStorage> storage_;
     std::shared_ptr<Build> pending_;  ///< a build that is not finished yet
     bool reading_slice_ = false;
+    mutable bool broken_ = false;  ///< lists in no order: a failed build or clear() left them so
+    bool without_pool_ = false;    ///< the memory of the nodes is to be given back then
     mutable std::map<std::string, Kernel> kernels_;  ///< the library's, by name and definitions
     mutable std::unique_ptr<CellScan> scan_;
 };
