@@ -41,7 +41,8 @@ std::vector<Workload> random_and_coherent(std::vector<Workload> workloads) {
 }
 
 std::string Keeping::name() const {
-    return "storage:" + storage + (allocation.empty() ? "" : "/allocation:" + allocation);
+    return "storage:" + storage + (allocation.empty() ? "" : "/allocation:" + allocation) +
+           (reads == 0 ? "" : "/reads:" + std::to_string(reads));
 }
 
 const std::vector<Keeping>& storages() {
