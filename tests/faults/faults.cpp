@@ -116,7 +116,7 @@ std::uint64_t inject_in_lives(const Plan& plan, std::uint64_t step) {
     return injected;
 }
 
-TEST_CASE("the layer sees the calls, and counts the references") {
+TEST_CASE("the layer sees calls and counts references") {
     const Buffer<cl_uint> warm(device(), 1);
     REQUIRE(faults::loaded());
     const References before = faults::references();
@@ -141,7 +141,7 @@ TEST_CASE("any call fails once") {
     std::cout << "faults: " << injected << " injected, one at a time" << std::endl;
 }
 
-TEST_CASE("any call fails once, not for want of memory") {
+TEST_CASE("any call fails once for other reasons than memory") {
     const std::uint64_t injected = inject_in_operations(device(), {.code = Plan::Code::object}, 5);
     std::cout << "faults: " << injected << " injected, one at a time, that tell of invalid objects"
               << std::endl;
@@ -156,17 +156,18 @@ TEST_CASE("all calls fail from any one on") {
     std::cout << "faults: " << injected << " injected, with all calls after them" << std::endl;
 }
 
-TEST_CASE("a build fails, and so does a call of its cleanup") {
+TEST_CASE("a build fails and so does a call of its cleanup") {
     std::uint64_t injected = 0;
     for (const Operation& operation : operations())
         if (operation.before == Contents::empty)
+            // The second failure comes so many calls after the first, wherever that is.
             for (const std::uint64_t later : {1u, 2u, 3u, 4u})
                 injected += inject(device(), operation, {.call = later, .again = 2 * later},
                                    9 * operation.step);
     std::cout << "faults: " << injected << " injected, with a second one soon after" << std::endl;
 }
 
-TEST_CASE("any call fails once, on an out-of-order queue") {
+TEST_CASE("any call fails once on an out-of-order queue") {
     std::optional<cl::CommandQueue> queue;
     try {
         queue.emplace(device().context(), cl::QueueProperties::OutOfOrder);
