@@ -28,6 +28,7 @@ kernel void cellist_check_choice(CELLIST_LISTS(CELLIST_RECORD, lists),
     if (cell >= cellist_cells(lists)) return;
     const uint wanted = lists_heads[cellist_row(lists_view, CELLIST_ROW_WANTED, cell)];
     const uint equals = lists_heads[cellist_row(lists_view, CELLIST_ROW_EQUALS, cell)];
-    if (cell == 0) choice->words = cellist_rank_length((CELLIST_RECORD*)0, lists_view.rank_member);
+    if (cell == 0)
+        choice->words = cellist_rank_length((struct CELLIST_RECORD*)0, lists_view.rank_member);
     if (equals > wanted) atomic_inc(&choice->undecided);
 }

@@ -104,16 +104,16 @@ static inline void cellist_sort_long(CELLIST_LISTS(CELLIST_RECORD, lists), uint 
     lists_heads[cell] = sorted;
 }
 
-static inline int cellist_record_order(CELLIST_RECORD a, CELLIST_RECORD b) {
+static inline int cellist_record_order(struct CELLIST_RECORD a, struct CELLIST_RECORD b) {
     const ulong x = cellist_sort_key(a);
     const ulong y = cellist_sort_key(b);
     return x != y ? x < y : cellist_record_before(a, b, 0);
 }
 
-static inline void cellist_sort_short_piece(global CELLIST_RECORD* records, uint length) {
+static inline void cellist_sort_short_piece(global struct CELLIST_RECORD* records, uint length) {
     ulong keys[CELLIST_SORT_SHORT];
     for (uint i = 0; i < length; ++i) {
-        const CELLIST_RECORD record = records[i];
+        const struct CELLIST_RECORD record = records[i];
         const ulong key = cellist_sort_key(record);
         uint at = i;
         for (; at > 0; --at) {
@@ -128,8 +128,8 @@ static inline void cellist_sort_short_piece(global CELLIST_RECORD* records, uint
 }
 
 // Lets `record` sink from position `at` in the heap of `length` records: the last comes first.
-static inline void cellist_sift(global CELLIST_RECORD* records, uint at, uint length,
-                                CELLIST_RECORD record) {
+static inline void cellist_sift(global struct CELLIST_RECORD* records, uint at, uint length,
+                                struct CELLIST_RECORD record) {
     while (at < length / 2) {
         uint child = 2 * at + 1;
         if (child + 1 < length && cellist_record_order(records[child], records[child + 1])) ++child;
@@ -140,10 +140,10 @@ static inline void cellist_sift(global CELLIST_RECORD* records, uint at, uint le
     records[at] = record;
 }
 
-static inline void cellist_sort_long_piece(global CELLIST_RECORD* records, uint length) {
+static inline void cellist_sort_long_piece(global struct CELLIST_RECORD* records, uint length) {
     for (uint i = length / 2; i > 0; --i) cellist_sift(records, i - 1, length, records[i - 1]);
     for (uint end = length - 1; end > 0; --end) {
-        const CELLIST_RECORD last = records[end];
+        const struct CELLIST_RECORD last = records[end];
         records[end] = records[0];
         cellist_sift(records, 0, end, last);
     }
@@ -159,7 +159,7 @@ kernel void cellist_sort(CELLIST_LISTS(CELLIST_RECORD, lists)) {
     }
     const uint begin = cellist_begin(lists_heads, lists_view, cell);
     const uint length = cellist_end(lists_heads, lists_view, cell) - begin;
-    global CELLIST_RECORD* records = (global CELLIST_RECORD*)lists_nodes + begin;
+    global struct CELLIST_RECORD* records = (global struct CELLIST_RECORD*)lists_nodes + begin;
     if (length <= CELLIST_SORT_SHORT)
         cellist_sort_short_piece(records, length);
     else

@@ -11,8 +11,7 @@ void Build::guarded(Step step) {
         step();
     } catch (const OpenClError& error) {
         // A driver may find out only now that it has no memory for a pool it had granted.
-        fail(error.code() == CL_MEM_OBJECT_ALLOCATION_FAILURE ||
-             error.code() == CL_OUT_OF_RESOURCES || error.code() == CL_OUT_OF_HOST_MEMORY);
+        fail(out_of_memory(error));
         throw;
     } catch (...) {
         fail(false);
@@ -38,7 +37,7 @@ void Build::enqueue() {
     for (ListsCore* container : containers_) container->settle();
     reports_.resize(containers_.size());
     guarded([&] {
-        for (ListsCore* container : containers_) container->storage().start();
+        for (ListsCore* container : containers_) container->start();
         enqueue_passes();
     });
     for (ListsCore* container : containers_) container->set_pending(shared_from_this());
@@ -68,7 +67,7 @@ void Build::run_to_end() {
         bool complete = true;
         for (std::size_t i = 0; i < containers_.size(); ++i) {
             reports_[i].passes = passes_;
-            if (!containers_[i]->storage().review(reports_[i])) complete = false;
+            if (!containers_[i]->review(reports_[i])) complete = false;
         }
         if (complete) return;
         enqueue_passes();
@@ -99,7 +98,7 @@ void Build::abandon() noexcept {
 
 bool Build::may_change() const {
     for (const ListsCore* container : containers_)
-        if (container->storage().may_grow()) return true;
+        if (container->review_may_change()) return true;
     return false;
 }
 

@@ -201,6 +201,11 @@ cl::Event DeviceState::marker() const {
     });
 }
 
+const std::optional<Profile>& DeviceState::profile() {
+    std::call_once(profile_once_, [&] { profile_ = load_profile(info); });
+    return profile_;
+}
+
 const cl::Program& DeviceState::program(const std::string& source, const std::string& options) {
     const std::lock_guard lock(mutex_);
     const std::string key = options + '\0' + source;

@@ -3,12 +3,12 @@
 #include <cstring>
 #include <map>
 #include <numeric>
-#include <regex>
 
 #include <cellist/kernel.hpp>
 
 #include "cellist_kernels.hpp"
 #include "device_state.hpp"
+#include "program_text.hpp"
 #include "view.hpp"
 
 namespace cellist {
@@ -18,6 +18,7 @@ namespace {
 using detail::Arguments;
 using detail::check;
 using detail::opencl;
+using detail::ProgramText;
 
 /// What a kernel expects as one parameter.
 struct Parameter {
@@ -28,84 +29,10 @@ struct Parameter {
     std::size_t size = 0;  ///< in bytes; 0 if not known
 };
 
-/// Takes the library's own #include lines out of a source, since its text stands before it already,
-/// and keeps the line numbers.
-std::string without_library_includes(const std::string& text, bool& uses_glm) {
-    static const std::regex include(
-        R"([ \t]*#[ \t]*include[ \t]*[<"]cellist/(lists|glm)\.clh[>"])");
-    std::string out;
-    for (std::size_t begin = 0; begin < text.size();) {
-        const std::size_t size = std::min(text.find('\n', begin), text.size() - 1) + 1 - begin;
-        std::string line = text.substr(begin, size);
-        begin += size;
-        std::smatch match;  // of few lines: regular expressions are slow
-        if (line.find("cellist/") != std::string::npos &&
-            std::regex_search(line, match, include, std::regex_constants::match_continuous)) {
-            uses_glm = uses_glm || match[1] == "glm";
-            line.erase(0, static_cast<std::size_t>(match.length()));
-        }
-        out += line;
-    }
-    return out;
-}
-
-/// A program's text, put together from parts, and which lines come from which.
-class ProgramText {
-public:
-    void add(std::string_view part, const std::string& file_name) {
-        parts_.push_back({lines_ + 1, file_name});
-        std::string escaped;
-        for (const char c : file_name) {
-            if (c == '"' || c == '\\') escaped += '\\';
-            escaped += c;
-        }
-        append("#line 1 \"" + escaped + "\"\n");
-        append(part);
-        append("\n");
-    }
-
-    [[nodiscard]] const std::string& text() const { return text_; }
-
-    /// A compiler's log with the names and lines of the parts. NVIDIA's compiler does not follow
-    /// #line, and counts the lines of the whole text of "<kernel>".
-    [[nodiscard]] std::string in_parts(const std::string& log) const {
-        static const std::regex place("<kernel>:(\\d+)");
-        std::string out;
-        auto rest = log.begin();
-        for (std::sregex_iterator match(log.begin(), log.end(), place), end; match != end;
-             ++match) {
-            const std::size_t line = std::stoul((*match)[1]);
-            const auto behind = std::find_if(parts_.begin(), parts_.end(),
-                                             [&](const Part& part) { return part.line > line; });
-            out.append(rest, (*match)[0].first);
-            rest = (*match)[0].second;
-            if (behind == parts_.begin()) continue;
-            const Part& part = *std::prev(behind);
-            out += part.file_name + ":" + std::to_string(line - part.line);
-        }
-        return out.append(rest, log.end());
-    }
-
-private:
-    struct Part {
-        std::size_t line;  ///< of its #line, in the whole text
-        std::string file_name;
-    };
-
-    void append(std::string_view part) {
-        text_ += part;
-        lines_ += static_cast<std::size_t>(std::count(part.begin(), part.end(), '\n'));
-    }
-
-    std::string text_;
-    std::size_t lines_ = 0;
-    std::vector<Part> parts_;
-};
-
 ProgramText whole_source(const Source& source, const detail::Definitions& definitions,
                          cl_uint modes) {
     bool uses_glm = false;
-    const std::string text = without_library_includes(source.text, uses_glm);
+    const std::string text = detail::without_library_includes(source.text, uses_glm);
     detail::Definitions all = definitions;
     if (uses_glm) all.add(detail::glm_source());
     ProgramText whole;
@@ -115,19 +42,6 @@ ProgramText whole_source(const Source& source, const detail::Definitions& defini
     whole.add(all.source(), "structs");
     whole.add(text, source.file_name);
     return whole;
-}
-
-/// A log that mentions names which users never wrote, with what is behind them.
-std::string with_hints(std::string log) {
-    std::smatch what;
-    static const std::regex node("cellist_node_(\\w+)");
-    static const std::regex key("cellist_key_(\\w+)");
-    if (std::regex_search(log, what, node))
-        log += "\nhint: name a Lists<" + what[1].str() + "> or cellist::type<" + what[1].str() +
-               "> in the constructor of the Kernel, so that it knows the struct";
-    if (std::regex_search(log, what, key))
-        log += "\nhint: '" + what[1].str() + "' is no scalar member of an adapted struct";
-    return log;
 }
 
 const cl::Program& build(detail::DeviceState& device, const Source& source,
@@ -140,12 +54,12 @@ const cl::Program& build(detail::DeviceState& device, const Source& source,
     try {
         return device.program(whole.text(), "-cl-std=CL1.2 -cl-kernel-arg-info " + source.options);
     } catch (const OpenClError& error) {
-        std::smatch what;
-        static const std::regex check("cellist_layout_of_(\\w+)");
-        if (std::regex_search(error.log(), what, check))
+        const std::string member = detail::name_behind("cellist_layout_of_", error.log());
+        if (!member.empty())
             throw Error("the layout of a struct differs between the host and " + device.info.name +
-                        ": " + what[1].str() + " (struct_member)");
-        throw OpenClError(error.call(), error.code(), with_hints(whole.in_parts(error.log())));
+                        ": " + member + " (struct_member)");
+        throw OpenClError(error.call(), error.code(),
+                          detail::with_hints(whole.in_parts(error.log())));
     }
 }
 

@@ -6,6 +6,8 @@
 #include "build.hpp"
 #include "cell_scan.hpp"
 #include "cellist_kernels.hpp"
+#include "chooser.hpp"
+#include "expression.hpp"
 #include "storages.hpp"
 
 namespace cellist::detail {
@@ -37,8 +39,16 @@ ListsCore::ListsCore(std::shared_ptr<DeviceState> device, Definitions definition
       definitions_(std::move(definitions)),
       shape_(shape),
       options_(options),
-      storage_(make_storage(device_, definitions_, shape, options)) {
-    definitions_.modes = storage_->mode();
+      in_use_(options.storage) {
+    if (options.storage == Storage::automatic) {
+        chooser_ = std::make_unique<Chooser>(
+            Chooser::Container{shape.cells(), definitions_.records.back().size, options},
+            device_->profile());
+        use(chooser_->storage());
+    } else {
+        storage_ = make_storage(device_, definitions_, shape, options);
+        definitions_.modes = storage_->mode();
+    }
 }
 
 ListsCore::~ListsCore() {
@@ -121,10 +131,18 @@ void Arguments::add_lists(const ListsCore& lists) { lists.add_to(*this); }
 unsigned read_mode(const ListsCore& lists) { return lists.mode(); }
 
 cl::Event ListsCore::sort(const std::string& key, Order order) {
+    check_expression(key);
+    // Where clang knows that a value is undefined, it is an error: the sort around it would be undefined
+    // as well.
     const std::string key_function =
-        std::string("static inline ulong cellist_sort_key(CELLIST_RECORD record) {\n    return ") +
+        std::string(
+            "#ifdef __clang__\n#pragma clang diagnostic push\n"
+            "#pragma clang diagnostic error \"-Wdivision-by-zero\"\n"
+            "#pragma clang diagnostic error \"-Warray-bounds\"\n#endif\n"
+            "#line 1 \"sort expression\"\n"
+            "static inline ulong cellist_sort_key(struct CELLIST_RECORD record) { return ") +
         (order == Order::descending ? "~" : "") + "cellist_order(\n#line 1 \"sort expression\"\n" +
-        key + "\n);\n}\n";
+        key + "\n); }\n#ifdef __clang__\n#pragma clang diagnostic pop\n#endif\n";
     Arguments arguments;
     add_to(arguments);
     return kernel("cellist_sort", kernels::sort_cl, key_function).enqueue(cell_range(), arguments);
@@ -246,10 +264,14 @@ BuildReport ListsCore::build_slices(const std::function<void()>& insert,
     settle();
     BuildReport all;
     const auto take_all_cells = [this] {
-        reading_slice_ = false;
+        in_slices_ = reading_slice_ = false;
         storage_->set_slice({0, shape_.cells()});
     };
     try {
+        // An automatic storage has slots for the records of all cells, not for the budget.
+        if (chooser_)
+            use(chooser_->storage() == Storage::fixed ? Storage::linked : chooser_->storage());
+        in_slices_ = true;
         const std::vector<cl_uint> counts = count(insert, all);
         const BuildReport counted =
             std::exchange(all, {.attempted = all.attempted, .rejected = all.rejected, .passes = 1});

@@ -42,9 +42,9 @@ std::string layout_checks(const RecordType& record) {
 
 /// Whether record a comes before record b: by the member that `key` means, then by all members.
 std::string order_definition(const RecordType& record) {
-    std::string text = "static inline int CELLIST_OVERLOAD cellist_record_before(" + record.name +
-                       " a, " + record.name + " b, uint key)\n{\n    ulong x = 0, y = 0;\n" +
-                       "    switch (key) {\n";
+    std::string text = "static inline int CELLIST_OVERLOAD cellist_record_before(struct " +
+                       record.name + " a, struct " + record.name +
+                       " b, uint key)\n{\n    ulong x = 0, y = 0;\n" + "    switch (key) {\n";
     for (const RecordMember& member : record.members)
         if (member.is_scalar)
             text += "    case cellist_key_" + member.name + ": x = cellist_order(a." + member.name +
@@ -85,9 +85,9 @@ std::string rank_definition(const RecordType& record) {
         }
         if (member.is_scalar) members += "    }\n", lengths += "    }\n";
     }
-    return "static inline uint CELLIST_OVERLOAD cellist_rank_word(" + record.name +
+    return "static inline uint CELLIST_OVERLOAD cellist_rank_word(struct " + record.name +
            " record, uint member, uint word)\n{\n" + members + "    return 0;\n}\n" +
-           "static inline uint CELLIST_OVERLOAD cellist_rank_length(" + record.name +
+           "static inline uint CELLIST_OVERLOAD cellist_rank_length(struct " + record.name +
            "* record, uint member)\n{\n    uint words = 0;\n" + lengths + "    return words;\n}\n";
 }
 

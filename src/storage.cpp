@@ -209,9 +209,18 @@ bool ListStorage::review(BuildReport& report) {
     return review_pass(report);
 }
 
+void ListStorage::release_pool() noexcept {
+    settle();
+    if (!released_nodes_) released_nodes_ = capacity_nodes_;
+    capacity_nodes_ = 0;
+    nodes_ = Memory();
+}
+
 void ListStorage::recover(bool without_pool) {
     settle();
     open_ = false;
+    if (released_nodes_ && options_.overflow != Overflow::grow) allocate_pool(*released_nodes_);
+    released_nodes_.reset();
     make_whole(without_pool);
     clear();
 }
@@ -236,6 +245,8 @@ std::unique_ptr<ListStorage> make_storage(std::shared_ptr<DeviceState> device,
                 return std::make_unique<NearestStorage>(std::move(device), definitions, shape,
                                                         options);
             return std::make_unique<FixedStorage>(std::move(device), definitions, shape, options);
+        case Storage::automatic:
+            break;
     }
     throw Error("unknown storage");
 }

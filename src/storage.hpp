@@ -19,6 +19,12 @@
 
 namespace cellist::detail {
 
+/// The kernel did not insert the same records again where that is needed.
+class UnrepeatableError : public Error {
+public:
+    using Error::Error;
+};
+
 /// How a container keeps its nodes: the buffers, and the passes of a build. One class a storage; the
 /// device's side of all of them is kernels/cellist/lists.clh.
 class ListStorage {
@@ -47,6 +53,9 @@ public:
 
     /// Blocks until nothing is on its way to this object's memory. Comes before the destructor.
     void settle() noexcept { reading_.settle(); }
+    /// Gives the nodes' memory back, before another storage takes this one's place. What is left can
+    /// only be destroyed, or be recovered. Blocks as settle() does.
+    void release_pool() noexcept;
     /// Makes what a failed build may have left undone, with empty lists. A pool that grows is empty
     /// afterwards if there was none, or if `without_pool` says so.
     void recover(bool without_pool);
@@ -141,6 +150,7 @@ protected:
     cl_uint mode_;
     std::size_t node_bytes_;
     std::uint64_t capacity_nodes_ = 0;
+    std::optional<std::uint64_t> released_nodes_;  ///< the capacity that release_pool() gave back
     std::uint64_t stored_ = 0;
     cl_uint shard_bits_ = 0;
     cl_uint slots_ = 0;

@@ -65,12 +65,12 @@ bool CountedStorage::review_pass(BuildReport& report) {
     update(report, filled, kept);
     const std::uint64_t unfilled = filled_.found.unfilled;
     if (unfilled > 0 || filled.dropped != demand - kept || filled.rejected != counting.rejected)
-        throw Error("the kernel inserted " +
-                    std::to_string(kept - unfilled + filled.dropped + filled.rejected) +
-                    " records when it filled the lists, and " +
-                    std::to_string(demand + counting.rejected) +
-                    " or others when it counted them: it must insert the same records every time, "
-                    "or use Storage::linked");
+        throw UnrepeatableError(
+            "the kernel inserted " +
+            std::to_string(kept - unfilled + filled.dropped + filled.rejected) +
+            " records when it filled the lists, and " + std::to_string(demand + counting.rejected) +
+            " or others when it counted them: it must insert the same records every time, "
+            "or use Storage::linked");
     return true;
 }
 

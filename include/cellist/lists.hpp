@@ -69,9 +69,7 @@ public:
 
     /// The same for several inserting kernels: `insert` enqueues all of them with Kernel::run, and is
     /// called again after the pool has grown.
-    BuildReport build(std::invocable auto&& insert) {
-        return finish(*detail::ListsCore::start_build({core_.get()}, std::ref(insert)));
-    }
+    BuildReport build(std::invocable auto&& insert) { return core_->build(std::ref(insert)); }
 
     /// Starts the same and does not block. The event completes after the first pass; get() runs more
     /// of them if the pool was too small, or throws. Until then the lists are incomplete, unless the
@@ -123,7 +121,10 @@ public:
     }
 
     /// The same by an OpenCL C expression of `record`, of integer or float type, such as
-    /// "record.x * record.x + record.y * record.y". Throws OpenClError where it does not compile.
+    /// "record.x * record.x + record.y * record.y". Throws OpenClError where it does not compile, and
+    /// Error where it is not one expression of up to 1024 characters: comments, braces, statements,
+    /// text and directives are refused. Its value must be defined: after a division by 0 the order is
+    /// not, and records may be lost.
     cl::Event sort_by(const std::string& expression, Order order = Order::ascending) {
         return core_->sort(expression, order);
     }
@@ -191,6 +192,10 @@ public:
     [[nodiscard]] std::uint64_t capacity_nodes() const { return core_->capacity_nodes(); }
     /// Device memory of heads, nodes and counters.
     [[nodiscard]] std::uint64_t pool_bytes() const { return core_->pool_bytes(); }
+    /// The storage in use: in Storage::automatic the one of the last build.
+    [[nodiscard]] Storage storage() const { return core_->storage_in_use(); }
+    /// A sentence for people: which storage the next build takes, and the measurements that speak for it.
+    [[nodiscard]] std::string storage_reason() const { return core_->storage_reason(); }
 
     /// @private
     [[nodiscard]] detail::ListsCore& core() const { return *core_; }

@@ -30,6 +30,9 @@ enum class Storage {
     counted,
     /// One pass: a number of slots for each cell. Fastest where all lists are short.
     fixed,
+    /// One of the others. The first blocking builds of a container try them in turn and measure them;
+    /// the best is kept from then on. See docs/storages.md.
+    automatic,
 };
 
 /// How kernels get nodes from the pool of Storage::linked.
@@ -52,6 +55,8 @@ struct ListsOptions {
     /// Device memory that heads, nodes and counters may take together.
     std::uint64_t budget_bytes = std::numeric_limits<std::uint64_t>::max();
     Allocation allocation = Allocation::sharded;
+    /// For Storage::automatic: how often kernels walk all lists after each build.
+    std::uint32_t expected_reads = 1;
 };
 
 }  // namespace cellist

@@ -19,7 +19,9 @@ namespace cellist::detail {
 
 class Build;
 class CellScan;
+class Chooser;
 class ListStorage;
+struct Trial;
 
 /// Lists without the record's C++ type: a storage, and the kernels that read and sort any storage.
 /// The kernels see the record by its name in OpenCL C. Stays where it is: a build that is pending
@@ -39,6 +41,11 @@ public:
     [[nodiscard]] static cl::Event marker(Build& build);
     /// The rest of a build: a report for each container. Blocks.
     static const std::vector<BuildReport>& finish(Build& build);
+
+    /// A build of this container alone, from which Storage::automatic learns. Blocks.
+    BuildReport build(const std::function<void()>& insert);
+    /// The same, with the time that it takes and a read of every record after it. Blocks.
+    BuildReport measure(const std::function<void()>& insert, Trial& trial);
 
     /// Builds a range of cells at a time, and calls `read` for each.
     BuildReport build_slices(const std::function<void()>& insert,
@@ -68,6 +75,11 @@ public:
     [[nodiscard]] std::uint64_t pool_bytes() const;
     [[nodiscard]] const std::shared_ptr<DeviceState>& device() const { return device_; }
     [[nodiscard]] const std::string& record() const { return definitions_.records.back().name; }
+    /// What is in use, never Storage::automatic.
+    [[nodiscard]] Storage storage_in_use() const { return in_use_; }
+    [[nodiscard]] std::string storage_reason() const;
+    /// Of Storage::automatic; null otherwise. For tests, which tell it of times of their own.
+    [[nodiscard]] Chooser* chooser() const { return chooser_.get(); }
     /// The mode in which the lists are read, as in view.h.
     [[nodiscard]] unsigned mode() const;
 
@@ -82,10 +94,21 @@ public:
 
     // For Build.
     [[nodiscard]] ListStorage& storage() const { return *storage_; }
+    /// Puts the chosen storage in place, and starts a build in it.
+    void start();
+    /// What the storage's review() says. Where an automatic storage fails and another may not, that
+    /// takes its place, and the lists are not complete.
+    bool review(BuildReport& report);
+    /// Whether review() can change the lists.
+    [[nodiscard]] bool review_may_change() const;
     void set_pending(std::shared_ptr<Build> build) { pending_ = std::move(build); }
     void empty_after_failure(bool without_pool) noexcept;
 
 private:
+    BuildReport build_once(const std::function<void()>& insert);
+    void measure_walk(Trial& trial) const;
+    void use(Storage storage);
+    bool replace(const BuildReport& report, const char* why, bool for_ever);
     Kernel& kernel(const std::string& name, std::string_view source,
                    const std::string& definitions = {}) const;
     [[nodiscard]] Range cell_range() const;
@@ -107,8 +130,12 @@ private:
     Definitions definitions_;
     Shape shape_;
     ListsOptions options_;
+    std::unique_ptr<Chooser> chooser_;  ///< of Storage::automatic
+    Storage in_use_;
+    bool has_chosen_ = false;  ///< storage_ is what use() made, with its pool
     std::unique_ptr<ListStorage> storage_;
     std::shared_ptr<Build> pending_;  ///< a build that is not finished yet
+    bool in_slices_ = false;          ///< a build in slices is under way: the storage stays
     bool reading_slice_ = false;
     mutable bool broken_ = false;  ///< lists in no order: a failed build or clear() left them so
     bool without_pool_ = false;    ///< the memory of the nodes is to be given back then

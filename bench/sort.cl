@@ -1,0 +1,12 @@
+// Counts the nodes with a lesser key than the node before them in their list; one work-item a cell.
+#include <cellist/lists.clh>
+
+kernel void count_unsorted(CELLIST_LISTS(RECORD, lists), volatile global uint* unsorted) {
+    const uint cell = get_global_id(0);
+    uint before = 0;
+    cellist_for_each(lists, cell, node) {
+        const uint key = cellist_get(lists, node).key;
+        if (key < before) atomic_inc(unsorted);
+        before = key;
+    }
+}
