@@ -83,6 +83,7 @@ void warm_up(const Device& on, const Life& life, Storage storage) { life.run(on,
 /// Makes the first call of some work fail and each `step`th after it, one in a run, on all storages.
 /// Where the plan has a second failure, it moves with the first. Returns the number of runs with one.
 std::uint64_t inject(const Device& on, const auto& work, const Plan& plan, std::uint64_t step) {
+    if (!faults::loaded()) FAIL("the environment variable OPENCL_LAYERS must name the fault layer");
     std::uint64_t injected = 0;
     for (const Storage storage : all_storages) {
         warm_up(on, work, storage);
@@ -104,7 +105,8 @@ std::uint64_t inject(const Device& on, const auto& work, const Plan& plan, std::
 
 std::uint64_t inject_in_operations(const Device& on, const Plan& plan, std::uint64_t step) {
     std::uint64_t injected = 0;
-    for (const Operation& operation : operations()) injected += inject(on, operation, plan, step);
+    for (const Operation& operation : operations())
+        injected += inject(on, operation, plan, step * operation.step);
     return injected;
 }
 
@@ -114,7 +116,7 @@ std::uint64_t inject_in_lives(const Plan& plan, std::uint64_t step) {
     return injected;
 }
 
-TEST_CASE("the layer sees the calls, and counts the references") {
+TEST_CASE("the layer sees calls and counts references") {
     const Buffer<cl_uint> warm(device(), 1);
     REQUIRE(faults::loaded());
     const References before = faults::references();
@@ -139,29 +141,33 @@ TEST_CASE("any call fails once") {
     std::cout << "faults: " << injected << " injected, one at a time" << std::endl;
 }
 
-TEST_CASE("any call fails once, not for want of memory") {
+TEST_CASE("any call fails once for other reasons than memory") {
     const std::uint64_t injected = inject_in_operations(device(), {.code = Plan::Code::object}, 5);
     std::cout << "faults: " << injected << " injected, one at a time, that tell of invalid objects"
               << std::endl;
 }
 
 TEST_CASE("all calls fail from any one on") {
-    const Plan plan{.extent = Plan::Extent::lasting, .code = Plan::Code::object};
-    const std::uint64_t injected =
-        inject_in_operations(device(), plan, 5) + inject_in_lives(plan, 7);
+    std::uint64_t injected = 0;
+    for (const Plan::Code code : {Plan::Code::resources, Plan::Code::object}) {
+        const Plan plan{.extent = Plan::Extent::lasting, .code = code};
+        injected += inject_in_operations(device(), plan, 9) + inject_in_lives(plan, 13);
+    }
     std::cout << "faults: " << injected << " injected, with all calls after them" << std::endl;
 }
 
-TEST_CASE("a build fails, and so does a call of its cleanup") {
+TEST_CASE("a build fails and so does a call of its cleanup") {
     std::uint64_t injected = 0;
     for (const Operation& operation : operations())
         if (operation.before == Contents::empty)
+            // The second failure comes so many calls after the first, wherever that is.
             for (const std::uint64_t later : {1u, 2u, 3u, 4u})
-                injected += inject(device(), operation, {.call = later, .again = 2 * later}, 7);
+                injected += inject(device(), operation, {.call = later, .again = 2 * later},
+                                   9 * operation.step);
     std::cout << "faults: " << injected << " injected, with a second one soon after" << std::endl;
 }
 
-TEST_CASE("any call fails once, on an out-of-order queue") {
+TEST_CASE("any call fails once on an out-of-order queue") {
     std::optional<cl::CommandQueue> queue;
     try {
         queue.emplace(device().context(), cl::QueueProperties::OutOfOrder);

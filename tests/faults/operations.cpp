@@ -362,7 +362,7 @@ constexpr Operation table[] = {
     {"build two containers", empty, build_both, repeated},
     {"build two containers that grow", empty, build_both, first, Room::too_little},
     {"build two containers later", empty, build_both_later, repeated},
-    {"build slices", empty, build_slices, repeated, Room::for_a_part},
+    {"build slices", empty, build_slices, repeated, Room::for_a_part, Overflow::grow, 4},
     {"clear", full, clear},
     {"sort by a member", full, sort_by_a_member},
     {"sort by an expression", full, sort_by_an_expression, repeated},
@@ -425,7 +425,7 @@ constexpr Life table_of_lives[] = {
     {"choose a device by name", choose_by_name},
     {"adopt a queue", adopt_a_queue},
     {"everything, on a device in use", live_on},
-    {"everything, on a new device", live_on_a_new_device, 101},
+    {"everything, on a new device", live_on_a_new_device, 151},
 };
 
 }  // namespace

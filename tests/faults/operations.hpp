@@ -30,6 +30,7 @@ struct Operation {
     Use use = Use::first;
     Room room = Room::enough;
     Overflow overflow = Overflow::grow;
+    std::uint64_t step = 1;  ///< more where it takes long: each so many-th call fails
 };
 std::span<const Operation> operations();
 
@@ -37,7 +38,7 @@ std::span<const Operation> operations();
 struct Life {
     const char* name;
     void (*run)(const Device& device, Storage storage);
-    std::uint64_t step = 1;  ///< more where it takes long: only so many calls fail
+    std::uint64_t step = 1;
 };
 std::span<const Life> lives();
 
