@@ -8,8 +8,11 @@
 // defines the value's type CELLIST_VALUE and cellist_value(CELLIST_RECORD).
 #include <cellist/lists.clh>
 
+// Here, where no parameter has its name.
+typedef CELLIST_VALUE cellist_gathered;
+
 kernel void cellist_gather(CELLIST_LISTS(CELLIST_RECORD, lists), uint begin, uint end,
-                           global const uint* offsets, global CELLIST_VALUE* values) {
+                           global const uint* offsets, global cellist_gathered* values) {
     const size_t item = get_global_id(0);
     if (item >= end - begin) return;
     const uint cell = begin + (uint)item;

@@ -1,32 +1,32 @@
-// What the kernels that sort have in common: the order of records, and ranking the keys of a few of
-// them.
+// What the kernels that sort have in common: how nodes lie in memory, and ranking a few of them.
 //
 // The order is that of cellist_sort_key(record), then that of the record's scalars. The host defines
-// cellist_sort_key, which maps the key to an unsigned integer of the same order, and before it:
 //
 //   CELLIST_SORT_KEY_BITS   32 or 64, what the key needs
+//   CELLIST_SORT_SLOTS      records that are ranked together, a power of two up to 256
+//   CELLIST_SORT_WIDTH      records that a work-item ranks at once: 4, 8 or 16, at most the slots
 //   CELLIST_SORT_ITEMS      work-items that sort together, a power of two. More than one are a
 //                           work-group and share local memory (GPUs); one needs neither (CPUs)
-//   CELLIST_SORT_WIDTH      records that a work-item ranks at once: 4, 8 or 16
-//   CELLIST_SORT_SLOTS      most records that are ranked together; at least the width, at most 256
 //
-// A record's rank is the number of records that come before it. Ranking compares each with each: for
-// some hundred records this is faster than any sort that branches, since it is the same work for all
-// of them, and it reads one key for CELLIST_SORT_WIDTH comparisons.
+// and behind this file cellist_sort_key, which maps the key to an unsigned integer of the same order.
+//
+// The rank of a record is the number of records that come before it. Ranking compares all with all: for
+// up to some hundred records this is faster than sorts with fewer comparisons, because it does not
+// branch on what it finds, and reads one key for CELLIST_SORT_WIDTH comparisons.
 #include <cellist/lists.clh>
 
-#define CELLIST_SORT_PASTE(type, width) type##width
-#define CELLIST_SORT_VECTOR(type, width) CELLIST_SORT_PASTE(type, width)
+#define CELLIST_SORT_PASTED(a, b) a##b
+#define CELLIST_SORT_PASTE(a, b) CELLIST_SORT_PASTED(a, b)
 #if CELLIST_SORT_KEY_BITS == 32
 typedef uint cellist_sort_bits;
-typedef CELLIST_SORT_VECTOR(uint, CELLIST_SORT_WIDTH) cellist_sort_keys;
+typedef CELLIST_SORT_PASTE(uint, CELLIST_SORT_WIDTH) cellist_sort_keys;
 typedef int cellist_sort_count;
-typedef CELLIST_SORT_VECTOR(int, CELLIST_SORT_WIDTH) cellist_sort_counts;
+typedef CELLIST_SORT_PASTE(int, CELLIST_SORT_WIDTH) cellist_sort_counts;
 #else
 typedef ulong cellist_sort_bits;
-typedef CELLIST_SORT_VECTOR(ulong, CELLIST_SORT_WIDTH) cellist_sort_keys;
+typedef CELLIST_SORT_PASTE(ulong, CELLIST_SORT_WIDTH) cellist_sort_keys;
 typedef long cellist_sort_count;
-typedef CELLIST_SORT_VECTOR(long, CELLIST_SORT_WIDTH) cellist_sort_counts;
+typedef CELLIST_SORT_PASTE(long, CELLIST_SORT_WIDTH) cellist_sort_counts;
 #endif
 
 #if CELLIST_SORT_ITEMS > 1
@@ -35,43 +35,63 @@ typedef CELLIST_SORT_VECTOR(long, CELLIST_SORT_WIDTH) cellist_sort_counts;
 #define CELLIST_SORT_SHARED local
 #define cellist_sort_item() ((uint)get_local_id(0))
 #define cellist_sort_barrier() barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE)
-#define cellist_sort_add(sum, value) atomic_add(sum, value)
-// Keys of one list behind those of another: neighbouring lists begin in different banks.
+// Neighbouring lists begin in different banks of local memory.
 #define CELLIST_SORT_STRIDE (CELLIST_SORT_SLOTS + 1)
+static inline uint cellist_sort_add(local uint* sum, uint value) { return atomic_add(sum, value); }
 #else
 #define CELLIST_SORT_KERNEL kernel void
 #define CELLIST_SORT_SHARED
 #define cellist_sort_item() 0u
 #define cellist_sort_barrier()
-#define cellist_sort_add(sum, value) (*(sum) += (value))
 #define CELLIST_SORT_STRIDE CELLIST_SORT_SLOTS
+static inline uint cellist_sort_add(uint* sum, uint value) {
+    *sum += value;
+    return *sum - value;
+}
 #endif
 
-// Nodes of a list in one piece; none where the offsets are impossible.
+// A node as it lies in a pool.
+typedef struct cellist_sort_node {
+#if CELLIST_MODES == CELLIST_LINKED
+    CELLIST_SORT_PASTE(cellist_node_, CELLIST_RECORD) stored;
+} cellist_sort_node;
+#define cellist_sort_record(node) ((node).stored.record)
+#else
+    struct CELLIST_RECORD stored;
+} cellist_sort_node;
+#define cellist_sort_record(node) ((node).stored)
+#endif
+
+// Writes a node to its place in a list that lies in one piece; `last` is the place of the last node.
+static inline void cellist_sort_store(global cellist_sort_node* nodes, uint at, uint last,
+                                      cellist_sort_node node) {
+#if CELLIST_MODES == CELLIST_LINKED
+    node.stored.next = at < last ? at + 1 : CELLIST_NONE;
+#endif
+    nodes[at] = node;
+}
+
+#if CELLIST_MODES != CELLIST_LINKED
+// Nodes of a list; none where the offsets are impossible.
 static inline uint cellist_sort_length(volatile global uint* heads, const cellist_view view,
                                        uint cell) {
     const uint begin = cellist_begin(heads, view, cell);
     const uint end = cellist_end(heads, view, cell);
     return begin <= end && end <= view.capacity_nodes ? end - begin : 0;
 }
+#endif
 
-// The records that are ranked together: the nodes of a list, or those behind a first node.
-static inline uint cellist_sort_node(CELLIST_SORT_SHARED const uint* nodes, uint first, uint i) {
-    return CELLIST_MODES == CELLIST_LINKED ? nodes[i] : first + i;
-}
-
-// Finds the places of the records from `at` on, CELLIST_SORT_WIDTH of them, among `length` records by
-// their keys alone: order[place] is a record's number. Returns the sum of the places. All of them
-// together give length * (length - 1) / 2, or less if keys are equal; cellist_sort_rank_equal is right
-// then, too.
+// Finds the places of CELLIST_SORT_WIDTH of `length` records by their keys, from record `at` on:
+// order[place] is the record. Returns the sum of the places. The sums over all records add up to
+// length * (length - 1) / 2, or to less if keys are equal; cellist_sort_rank_equal is right then, too.
 static inline uint cellist_sort_rank(CELLIST_SORT_SHARED const cellist_sort_bits* keys, uint length,
                                      uint at, CELLIST_SORT_SHARED uchar* order) {
-    const cellist_sort_keys own = CELLIST_SORT_VECTOR(vload, CELLIST_SORT_WIDTH)(0, keys + at);
+    const cellist_sort_keys own = CELLIST_SORT_PASTE(vload, CELLIST_SORT_WIDTH)(0, keys + at);
     cellist_sort_counts before = 0;
     // A comparison that holds is -1.
     for (uint i = 0; i < length; ++i) before -= (cellist_sort_keys)keys[i] < own;
     cellist_sort_count places[CELLIST_SORT_WIDTH];
-    CELLIST_SORT_VECTOR(vstore, CELLIST_SORT_WIDTH)(before, 0, places);
+    CELLIST_SORT_PASTE(vstore, CELLIST_SORT_WIDTH)(before, 0, places);
     uint sum = 0;
     for (uint i = 0; i < CELLIST_SORT_WIDTH && at + i < length; ++i) {
         order[places[i]] = (uchar)(at + i);
@@ -80,18 +100,22 @@ static inline uint cellist_sort_rank(CELLIST_SORT_SHARED const cellist_sort_bits
     return sum;
 }
 
-// The same, with records of equal keys in the order of the records. Equal records stay in their order.
-static void cellist_sort_rank_equal(CELLIST_LISTS(CELLIST_RECORD, lists),
-                                    CELLIST_SORT_SHARED const cellist_sort_bits* keys,
-                                    CELLIST_SORT_SHARED const uint* nodes, uint first, uint length,
+// The same where keys may be equal: records with equal keys come in the order of records, and equal
+// records stay in theirs. Record i is nodes[first + index[i]], or nodes[first + i] without an index.
+static void cellist_sort_rank_equal(global const cellist_sort_node* nodes, uint first,
+                                    CELLIST_SORT_SHARED const uint* index,
+                                    CELLIST_SORT_SHARED const cellist_sort_bits* keys, uint length,
                                     uint at, CELLIST_SORT_SHARED uchar* order) {
     for (uint i = at; i < at + CELLIST_SORT_WIDTH && i < length; ++i) {
-        const CELLIST_RECORD own = cellist_get(lists, cellist_sort_node(nodes, first, i));
+        const cellist_sort_bits key = keys[i];
+        const struct CELLIST_RECORD own =
+            cellist_sort_record(nodes[first + (index ? index[i] : i)]);
         uint place = 0;
         for (uint j = 0; j < length; ++j) {
-            place += keys[j] < keys[i];
-            if (keys[j] != keys[i] || j == i) continue;
-            const CELLIST_RECORD other = cellist_get(lists, cellist_sort_node(nodes, first, j));
+            place += keys[j] < key;
+            if (keys[j] != key || j == i) continue;
+            const struct CELLIST_RECORD other =
+                cellist_sort_record(nodes[first + (index ? index[j] : j)]);
             place += cellist_record_before(other, own, 0) ||
                      (j < i && !cellist_record_before(own, other, 0));
         }

@@ -1,30 +1,30 @@
-// Sorts long lists without scratch memory, one work-item a list: slow, but for any memory. See sort.cl.
+// Sorts lists of any length where there is no memory for a second pool, one work-item a list. See
+// sort.cl.
 //
 // Linked lists: bottom-up merge sort of the list itself. pending[i] is a sorted list of 2^i nodes or
 // none, and taking a node in works like adding one to a binary number, each carry merging two lists of
-// equal size. Lists in one piece: heap sort.
+// equal size. Links in circles end after as many steps as a sound list takes. Lists in one piece: heap
+// sort.
 //
-//   cells   the cells with the lists
-//   count   how many
+//   cells   count   the cells to sort; all, from 0 on, if `listed` is 0
 
 // Whether record a, with key x, comes before record b, with key y.
-static inline int cellist_sort_before(CELLIST_RECORD a, cellist_sort_bits x, CELLIST_RECORD b,
-                                      cellist_sort_bits y) {
+static inline int cellist_sort_before(struct CELLIST_RECORD a, cellist_sort_bits x,
+                                      struct CELLIST_RECORD b, cellist_sort_bits y) {
     return x != y ? x < y : cellist_record_before(a, b, 0);
 }
 
 #if CELLIST_MODES == CELLIST_LINKED
 
-// Merges two sorted lists of `nodes` nodes together.
+// Merges two sorted lists of up to `most` nodes together.
 static inline uint cellist_sort_merge(CELLIST_LISTS(CELLIST_RECORD, lists), uint a, uint b,
-                                      ulong nodes) {
+                                      ulong most) {
     uint first = CELLIST_NONE;
     uint last = CELLIST_NONE;
     cellist_sort_bits x = cellist_sort_key(cellist_get(lists, a));
     cellist_sort_bits y = cellist_sort_key(cellist_get(lists, b));
-    for (ulong step = 0; step < nodes; ++step) {
-        const int b_first =
-            cellist_sort_before(cellist_get(lists, b), y, cellist_get(lists, a), x);
+    for (ulong step = 0; step < most; ++step) {
+        const int b_first = cellist_sort_before(cellist_get(lists, b), y, cellist_get(lists, a), x);
         const uint least = b_first ? b : a;
         if (last == CELLIST_NONE)
             first = least;
@@ -74,18 +74,17 @@ static inline void cellist_sort_cell(CELLIST_LISTS(CELLIST_RECORD, lists), uint 
 
 #else
 
-static inline int cellist_sort_record_before(CELLIST_RECORD a, CELLIST_RECORD b) {
+static inline int cellist_sort_first(struct CELLIST_RECORD a, struct CELLIST_RECORD b) {
     return cellist_sort_before(a, cellist_sort_key(a), b, cellist_sort_key(b));
 }
 
 // Lets `record` sink from position `at` in the heap of `length` records: the last comes first.
-static inline void cellist_sort_sift(global CELLIST_RECORD* records, uint at, uint length,
-                                     CELLIST_RECORD record) {
+static inline void cellist_sort_sift(global struct CELLIST_RECORD* records, uint at, uint length,
+                                     struct CELLIST_RECORD record) {
     while (at < length / 2) {
         uint child = 2 * at + 1;
-        if (child + 1 < length && cellist_sort_record_before(records[child], records[child + 1]))
-            ++child;
-        if (!cellist_sort_record_before(record, records[child])) break;
+        if (child + 1 < length && cellist_sort_first(records[child], records[child + 1])) ++child;
+        if (!cellist_sort_first(record, records[child])) break;
         records[at] = records[child];
         at = child;
     }
@@ -95,12 +94,12 @@ static inline void cellist_sort_sift(global CELLIST_RECORD* records, uint at, ui
 static inline void cellist_sort_cell(CELLIST_LISTS(CELLIST_RECORD, lists), uint cell) {
     const uint length = cellist_sort_length(lists_heads, lists_view, cell);
     if (length < 2) return;
-    global CELLIST_RECORD* records =
+    global struct CELLIST_RECORD* records =
         &cellist_get(lists, cellist_begin(lists_heads, lists_view, cell));
     for (uint i = length / 2; i > 0; --i)
         cellist_sort_sift(records, i - 1, length, records[i - 1]);
     for (uint end = length - 1; end > 0; --end) {
-        const CELLIST_RECORD last = records[end];
+        const struct CELLIST_RECORD last = records[end];
         records[end] = records[0];
         cellist_sort_sift(records, 0, end, last);
     }
@@ -109,7 +108,7 @@ static inline void cellist_sort_cell(CELLIST_LISTS(CELLIST_RECORD, lists), uint 
 #endif
 
 kernel void cellist_sort_in_place(CELLIST_LISTS(CELLIST_RECORD, lists), global const uint* cells,
-                                  uint count) {
+                                  uint listed, uint count) {
     const uint i = get_global_id(0);
-    if (i < count) cellist_sort_cell(CELLIST_PASS(lists), cells[i]);
+    if (i < count) cellist_sort_cell(CELLIST_PASS(lists), listed ? cells[i] : i);
 }

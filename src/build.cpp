@@ -1,17 +1,8 @@
 #include "build.hpp"
 
-#include <optional>
-
 #include <cellist/detail/lists_core.hpp>
 
 namespace cellist::detail {
-
-namespace {
-
-/// Builds in which the demand grows with every pass end here: the kernel does not repeat itself.
-constexpr std::uint32_t passes_max = 8;
-
-}  // namespace
 
 /// Runs a part of the build; whatever goes wrong in it leaves all containers empty.
 template <class Step>
@@ -20,8 +11,7 @@ void Build::guarded(Step step) {
         step();
     } catch (const OpenClError& error) {
         // A driver may find out only now that it has no memory for a pool it had granted.
-        fail(error.code() == CL_MEM_OBJECT_ALLOCATION_FAILURE ||
-             error.code() == CL_OUT_OF_RESOURCES || error.code() == CL_OUT_OF_HOST_MEMORY);
+        fail(out_of_memory(error));
         throw;
     } catch (...) {
         fail(false);
@@ -33,7 +23,10 @@ void Build::guarded(Step step) {
 void Build::fail(bool without_pool) noexcept {
     finished_ = true;
     error_ = std::current_exception();
-    for (ListsCore* container : containers_) container->empty_after_failure(without_pool);
+    for (ListsCore* container : containers_) {
+        container->set_pending(nullptr);
+        container->empty_after_failure(without_pool);
+    }
 }
 
 void Build::enqueue() {
@@ -44,10 +37,16 @@ void Build::enqueue() {
     for (ListsCore* container : containers_) container->settle();
     reports_.resize(containers_.size());
     guarded([&] {
-        for (ListsCore* container : containers_) container->storage().start();
+        for (ListsCore* container : containers_) container->start();
         enqueue_passes();
     });
     for (ListsCore* container : containers_) container->set_pending(shared_from_this());
+}
+
+cl::Event Build::marker() {
+    cl::Event event;
+    guarded([&] { event = containers_.front()->marker(); });
+    return event;
 }
 
 /// Enqueues a pass, and more of them where a container needs no look at the counters in between.
@@ -65,17 +64,12 @@ void Build::enqueue_passes() {
 
 void Build::run_to_end() {
     for (;;) {
-        std::optional<std::size_t> incomplete;
+        bool complete = true;
         for (std::size_t i = 0; i < containers_.size(); ++i) {
             reports_[i].passes = passes_;
-            if (!containers_[i]->storage().review(reports_[i])) incomplete = i;
+            if (!containers_[i]->review(reports_[i])) complete = false;
         }
-        if (!incomplete) return;
-        if (passes_ >= passes_max)
-            throw OverflowError("the kernel inserted more records in each of " +
-                                    std::to_string(passes_max) +
-                                    " passes: it must insert the same records every time",
-                                reports_[*incomplete]);
+        if (complete) return;
         enqueue_passes();
     }
 }
@@ -104,7 +98,7 @@ void Build::abandon() noexcept {
 
 bool Build::may_change() const {
     for (const ListsCore* container : containers_)
-        if (container->storage().may_grow()) return true;
+        if (container->review_may_change()) return true;
     return false;
 }
 

@@ -24,6 +24,8 @@ public:
     /// Enqueues the first passes. Throws what `insert` throws; the containers are empty then. Does not
     /// block.
     void enqueue();
+    /// Completes when what was enqueued so far has. The build has failed where this throws.
+    [[nodiscard]] cl::Event marker();
     /// The reports, after all passes. Throws the same every time if the build failed; the containers
     /// are empty then. Blocks.
     const std::vector<BuildReport>& finish();

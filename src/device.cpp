@@ -11,24 +11,37 @@ namespace cellist {
 
 namespace {
 
-/// Every device of every platform. No platform is no device, not an error.
+using detail::check;
+
+/// Every device of every platform. No platform and no device are not errors.
 std::vector<cl::Device> all_devices() {
-    std::vector<cl::Platform> platforms;
+    constexpr cl_int platform_not_found = -1001;  // CL_PLATFORM_NOT_FOUND_KHR
     cl_uint count = 0;
-    if (clGetPlatformIDs(0, nullptr, &count) != CL_SUCCESS || count == 0) return {};
+    cl_int code = clGetPlatformIDs(0, nullptr, &count);
+    if (code == platform_not_found || (code == CL_SUCCESS && count == 0)) return {};
+    check("clGetPlatformIDs", code);
     std::vector<cl_platform_id> ids(count);
-    if (clGetPlatformIDs(count, ids.data(), nullptr) != CL_SUCCESS) return {};
+    check("clGetPlatformIDs", clGetPlatformIDs(count, ids.data(), nullptr));
     std::vector<cl::Device> devices;
     for (const cl_platform_id platform : ids) {
-        if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 0, nullptr, &count) != CL_SUCCESS)
-            continue;
+        code = clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 0, nullptr, &count);
+        if (code == CL_DEVICE_NOT_FOUND || (code == CL_SUCCESS && count == 0)) continue;
+        check("clGetDeviceIDs", code);
         std::vector<cl_device_id> handles(count);
-        if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, count, handles.data(), nullptr) !=
-            CL_SUCCESS)
-            continue;
+        check("clGetDeviceIDs",
+              clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, count, handles.data(), nullptr));
         for (const cl_device_id handle : handles) devices.emplace_back(handle, true);
     }
     return devices;
+}
+
+/// One property of a queue. Not by the bindings, which release what they could not retain.
+template <class T>
+T queue_info(const cl::CommandQueue& queue, cl_command_queue_info what) {
+    T value{};
+    check("clGetCommandQueueInfo",
+          clGetCommandQueueInfo(queue(), what, sizeof value, &value, nullptr));
+    return value;
 }
 
 /// The text up to the first NUL: drivers differ in whether they count it.
@@ -65,6 +78,15 @@ std::string lower(std::string_view text) {
     std::transform(out.begin(), out.end(), out.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return out;
+}
+
+/// Empty where there is none to be had.
+std::string build_log(const cl::Program& program, const cl::Device& device) {
+    try {
+        return trimmed(program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device));
+    } catch (const cl::Error&) {
+        return {};
+    }
 }
 
 constexpr const char* no_platform =
@@ -117,7 +139,7 @@ Device::Device(const cl::Device& device) : state_(std::make_shared<detail::Devic
     detail::opencl([&] {
         state_->context = cl::Context(device);
         state_->queue = cl::CommandQueue(state_->context, device, CL_QUEUE_PROFILING_ENABLE);
-        state_->device = device;
+        state_->device = cl::Device(device);
         state_->info = describe(device);
     });
 }
@@ -125,11 +147,12 @@ Device::Device(const cl::Device& device) : state_(std::make_shared<detail::Devic
 Device::Device(cl::Context context, cl::CommandQueue queue)
     : state_(std::make_shared<detail::DeviceState>()) {
     detail::opencl([&] {
-        if (queue.getInfo<CL_QUEUE_CONTEXT>()() != context())
+        if (queue_info<cl_context>(queue, CL_QUEUE_CONTEXT) != context())
             throw Error("the command queue belongs to another context");
         state_->out_of_order =
-            (queue.getInfo<CL_QUEUE_PROPERTIES>() & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0;
-        state_->device = queue.getInfo<CL_QUEUE_DEVICE>();
+            (queue_info<cl_command_queue_properties>(queue, CL_QUEUE_PROPERTIES) &
+             CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0;
+        state_->device = cl::Device(queue_info<cl_device_id>(queue, CL_QUEUE_DEVICE), true);
         state_->info = describe(state_->device);
         state_->context = std::move(context);
         state_->queue = std::move(queue);
@@ -178,19 +201,23 @@ cl::Event DeviceState::marker() const {
     });
 }
 
-cl::Program DeviceState::program(const std::string& source, const std::string& options) {
+const std::optional<Profile>& DeviceState::profile() {
+    std::call_once(profile_once_, [&] { profile_ = load_profile(info); });
+    return profile_;
+}
+
+const cl::Program& DeviceState::program(const std::string& source, const std::string& options) {
     const std::lock_guard lock(mutex_);
     const std::string key = options + '\0' + source;
     if (const auto known = programs_.find(key); known != programs_.end()) return known->second;
-    return opencl([&] {
+    return opencl([&]() -> const cl::Program& {
         cl::Program program(context, source);
-        try {
-            program.build(device, options.c_str());
-        } catch (const cl::Error& error) {
-            throw OpenClError(error.what(), error.err(),
-                              trimmed(program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device)));
-        }
-        return programs_.emplace(key, program).first->second;
+        // Not by the bindings, which ask for the log of every build, and where that fails, throw that.
+        const cl_int code =
+            clBuildProgram(program(), 1, &device(), options.c_str(), nullptr, nullptr);
+        if (code != CL_SUCCESS)
+            throw OpenClError("clBuildProgram", code, build_log(program, device));
+        return programs_.emplace(key, std::move(program)).first->second;
     });
 }
 

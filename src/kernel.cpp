@@ -3,12 +3,12 @@
 #include <cstring>
 #include <map>
 #include <numeric>
-#include <regex>
 
 #include <cellist/kernel.hpp>
 
 #include "cellist_kernels.hpp"
 #include "device_state.hpp"
+#include "program_text.hpp"
 #include "view.hpp"
 
 namespace cellist {
@@ -16,7 +16,9 @@ namespace cellist {
 namespace {
 
 using detail::Arguments;
+using detail::check;
 using detail::opencl;
+using detail::ProgramText;
 
 /// What a kernel expects as one parameter.
 struct Parameter {
@@ -27,81 +29,10 @@ struct Parameter {
     std::size_t size = 0;  ///< in bytes; 0 if not known
 };
 
-/// Takes the library's own #include lines out of a source, since its text stands before it already,
-/// and keeps the line numbers.
-std::string without_library_includes(const std::string& text, bool& uses_glm) {
-    static const std::regex include(R"(^[ \t]*#[ \t]*include[ \t]*[<"]cellist/(\w+)\.clh[>"])",
-                                    std::regex::multiline);
-    std::string out;
-    auto rest = text.begin();
-    for (std::sregex_iterator match(text.begin(), text.end(), include), end; match != end;
-         ++match) {
-        const std::string name = (*match)[1];
-        if (name != "lists" && name != "glm") continue;
-        uses_glm = uses_glm || name == "glm";
-        out.append(rest, (*match)[0].first);
-        rest = (*match)[0].second;
-    }
-    return out.append(rest, text.end());
-}
-
-/// A program's text, put together from parts, and which lines come from which.
-class ProgramText {
-public:
-    void add(std::string_view part, const std::string& file_name) {
-        parts_.push_back({lines_ + 1, file_name});
-        std::string escaped;
-        for (const char c : file_name) {
-            if (c == '"' || c == '\\') escaped += '\\';
-            escaped += c;
-        }
-        append("#line 1 \"" + escaped + "\"\n");
-        append(part);
-        append("\n");
-    }
-
-    [[nodiscard]] const std::string& text() const { return text_; }
-
-    /// A compiler's log with the names and lines of the parts. NVIDIA's compiler does not follow
-    /// #line, and counts the lines of the whole text of "<kernel>".
-    [[nodiscard]] std::string in_parts(const std::string& log) const {
-        static const std::regex place("<kernel>:(\\d+)");
-        std::string out;
-        auto rest = log.begin();
-        for (std::sregex_iterator match(log.begin(), log.end(), place), end; match != end;
-             ++match) {
-            const std::size_t line = std::stoul((*match)[1]);
-            const auto behind = std::find_if(parts_.begin(), parts_.end(),
-                                             [&](const Part& part) { return part.line > line; });
-            out.append(rest, (*match)[0].first);
-            rest = (*match)[0].second;
-            if (behind == parts_.begin()) continue;
-            const Part& part = *std::prev(behind);
-            out += part.file_name + ":" + std::to_string(line - part.line);
-        }
-        return out.append(rest, log.end());
-    }
-
-private:
-    struct Part {
-        std::size_t line;  ///< of its #line, in the whole text
-        std::string file_name;
-    };
-
-    void append(std::string_view part) {
-        text_ += part;
-        lines_ += static_cast<std::size_t>(std::count(part.begin(), part.end(), '\n'));
-    }
-
-    std::string text_;
-    std::size_t lines_ = 0;
-    std::vector<Part> parts_;
-};
-
 ProgramText whole_source(const Source& source, const detail::Definitions& definitions,
                          cl_uint modes) {
     bool uses_glm = false;
-    const std::string text = without_library_includes(source.text, uses_glm);
+    const std::string text = detail::without_library_includes(source.text, uses_glm);
     detail::Definitions all = definitions;
     if (uses_glm) all.add(detail::glm_source());
     ProgramText whole;
@@ -113,21 +44,8 @@ ProgramText whole_source(const Source& source, const detail::Definitions& defini
     return whole;
 }
 
-/// A log that mentions names which users never wrote, with what is behind them.
-std::string with_hints(std::string log) {
-    std::smatch what;
-    static const std::regex node("cellist_node_(\\w+)");
-    static const std::regex key("cellist_key_(\\w+)");
-    if (std::regex_search(log, what, node))
-        log += "\nhint: name a Lists<" + what[1].str() + "> or cellist::type<" + what[1].str() +
-               "> in the constructor of the Kernel, so that it knows the struct";
-    if (std::regex_search(log, what, key))
-        log += "\nhint: '" + what[1].str() + "' is no scalar member of an adapted struct";
-    return log;
-}
-
-cl::Program build(detail::DeviceState& device, const Source& source,
-                  const detail::Definitions& definitions, cl_uint modes) {
+const cl::Program& build(detail::DeviceState& device, const Source& source,
+                         const detail::Definitions& definitions, cl_uint modes) {
     if (source.text.empty()) throw Error("the source of " + source.file_name + " is empty");
     if (definitions.needs_fp64 && !device.info.fp64)
         throw Error("a struct has members of type double, which " + device.info.name +
@@ -136,12 +54,12 @@ cl::Program build(detail::DeviceState& device, const Source& source,
     try {
         return device.program(whole.text(), "-cl-std=CL1.2 -cl-kernel-arg-info " + source.options);
     } catch (const OpenClError& error) {
-        std::smatch what;
-        static const std::regex check("cellist_layout_of_(\\w+)");
-        if (std::regex_search(error.log(), what, check))
+        const std::string member = detail::name_behind("cellist_layout_of_", error.log());
+        if (!member.empty())
             throw Error("the layout of a struct differs between the host and " + device.info.name +
-                        ": " + what[1].str() + " (struct_member)");
-        throw OpenClError(error.call(), error.code(), with_hints(whole.in_parts(error.log())));
+                        ": " + member + " (struct_member)");
+        throw OpenClError(error.call(), error.code(),
+                          detail::with_hints(whole.in_parts(error.log())));
     }
 }
 
@@ -165,10 +83,10 @@ std::size_t type_size(std::string name, const detail::Definitions& definitions) 
 
 std::string text_of(const cl::Kernel& kernel, cl_uint index, cl_kernel_arg_info what) {
     std::size_t size = 0;
-    if (clGetKernelArgInfo(kernel(), index, what, 0, nullptr, &size) != CL_SUCCESS) return {};
+    check("clGetKernelArgInfo", clGetKernelArgInfo(kernel(), index, what, 0, nullptr, &size));
     std::string text(size, '\0');
-    if (clGetKernelArgInfo(kernel(), index, what, size, text.data(), nullptr) != CL_SUCCESS)
-        return {};
+    check("clGetKernelArgInfo",
+          clGetKernelArgInfo(kernel(), index, what, size, text.data(), nullptr));
     return text.substr(0, text.find('\0'));
 }
 
@@ -260,6 +178,7 @@ cl::Kernel kernel_called(const cl::Program& program, const std::string& name,
     try {
         return {program, name.c_str()};
     } catch (const cl::Error& error) {
+        if (error.err() != CL_INVALID_KERNEL_NAME) throw;
         throw OpenClError(error.what(), error.err(),
                           source.file_name + " has no kernel called '" + name + "'");
     }
@@ -272,13 +191,14 @@ std::size_t written(const auto& list) {
     return list.size() - 3 * static_cast<std::size_t>(containers);
 }
 
+/// Null where there is no memory.
 cl_context context_of(const std::byte* memory_handle) {
     cl_mem memory = nullptr;
     std::memcpy(&memory, memory_handle, sizeof(cl_mem));
+    if (memory == nullptr) return nullptr;
     cl_context context = nullptr;
-    if (memory == nullptr || clGetMemObjectInfo(memory, CL_MEM_CONTEXT, sizeof(cl_context),
-                                                &context, nullptr) != CL_SUCCESS)
-        return nullptr;
+    check("clGetMemObjectInfo",
+          clGetMemObjectInfo(memory, CL_MEM_CONTEXT, sizeof(cl_context), &context, nullptr));
     return context;
 }
 
@@ -334,7 +254,7 @@ struct Kernel::Impl {
     /// The kernel for containers of these modes; builds it the first time.
     Variant& variant(cl_uint modes) {
         if (const auto known = variants.find(modes); known != variants.end()) return known->second;
-        const cl::Program program = build(*device, source, definitions, modes);
+        const cl::Program& program = build(*device, source, definitions, modes);
         return opencl([&]() -> Variant& {
             Variant made;
             made.kernel = kernel_called(program, name, source);

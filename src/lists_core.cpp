@@ -6,6 +6,8 @@
 #include "build.hpp"
 #include "cell_scan.hpp"
 #include "cellist_kernels.hpp"
+#include "chooser.hpp"
+#include "expression.hpp"
 #include "sort.hpp"
 #include "storages.hpp"
 
@@ -38,8 +40,16 @@ ListsCore::ListsCore(std::shared_ptr<DeviceState> device, Definitions definition
       definitions_(std::move(definitions)),
       shape_(shape),
       options_(options),
-      storage_(make_storage(device_, definitions_, shape, options)) {
-    definitions_.modes = storage_->mode();
+      in_use_(options.storage) {
+    if (options.storage == Storage::automatic) {
+        chooser_ = std::make_unique<Chooser>(
+            Chooser::Container{shape.cells(), definitions_.records.back().size, options},
+            device_->profile());
+        use(chooser_->storage());
+    } else {
+        storage_ = make_storage(device_, definitions_, shape, options);
+        definitions_.modes = storage_->mode();
+    }
 }
 
 ListsCore::~ListsCore() {
@@ -57,30 +67,41 @@ std::shared_ptr<Build> ListsCore::start_build(std::vector<ListsCore*> containers
     return build;
 }
 
+cl::Event ListsCore::marker(Build& build) { return build.marker(); }
 const std::vector<BuildReport>& ListsCore::finish(Build& build) { return build.finish(); }
 
-/// Leaves the lists empty, whatever failed before. `without_pool` gives the nodes' memory back; the
-/// next build grows anew.
+/// Leaves the lists empty, whatever failed before. `without_pool` gives the nodes' memory back, where
+/// the next build can grow anew.
 void ListsCore::empty_after_failure(bool without_pool) noexcept {
+    without_pool_ = without_pool || (broken_ && without_pool_);
+    broken_ = true;
     try {
-        storage_->recover(without_pool);
+        settle();
     } catch (...) {
-        // The device is lost; the error that is under way says why.
+        // The error that is under way says why. What comes next tries again.
     }
 }
 
 void ListsCore::settle() const {
     if (pending_) std::shared_ptr(pending_)->finish();
+    if (!broken_) return;
+    storage_->recover(without_pool_);
+    broken_ = false;
 }
 
 void ListsCore::add_to(Arguments& arguments) const {
-    if (pending_ && pending_->may_change()) settle();
+    if (!pending_ || pending_->may_change()) settle();
     storage_->add_to(arguments);
 }
 
 void ListsCore::clear() {
     settle();
-    storage_->clear();
+    try {
+        storage_->clear();
+    } catch (...) {
+        empty_after_failure(false);
+        throw;
+    }
 }
 
 std::function<Validation()> ListsCore::validate() const {
@@ -110,10 +131,19 @@ void Arguments::add_lists(const ListsCore& lists) { lists.add_to(*this); }
 
 unsigned read_mode(const ListsCore& lists) { return lists.mode(); }
 
-cl::Event ListsCore::sort(const std::string& key, Order order, unsigned bits) {
-    if (!sorter_) sorter_ = std::make_unique<ListSorter>(device_, definitions_);
-    return sorter_->sort(*this, {key, bits, order});
+cl::Event ListsCore::sort(const std::string& key, unsigned key_bits, Order order,
+                          std::uint32_t least) {
+    check_expression(key);
+    settle();
+    return sorter().sort(*storage_, {key, key_bits, order}, least);
 }
+
+ListSorter& ListsCore::sorter() {
+    if (!sorter_) sorter_ = std::make_unique<ListSorter>(device_, definitions_);
+    return *sorter_;
+}
+
+void ListsCore::sort_as_on(cl_device_type type) { sorter().set_device_type(type); }
 
 /// The length of every list, in words of a device buffer that start at `at`.
 Memory ListsCore::device_lengths(std::uint64_t at) const {
@@ -188,7 +218,7 @@ void ListsCore::download(Arrival& done, std::vector<cl_uint>& offsets,
 }
 
 void ListsCore::pack(const cl::Buffer& offsets,
-                     const std::function<cl::Buffer(std::uint64_t)>& allocate,
+                     const std::function<const cl::Buffer&(std::uint64_t)>& allocate,
                      const std::string& type, const std::string& value) const {
     const Memory words = device_offsets();
     opencl([&] {
@@ -230,15 +260,18 @@ BuildReport ListsCore::build_slices(const std::function<void()>& insert,
                                     const std::function<void(const Slice&)>& read) {
     settle();
     BuildReport all;
-    const std::vector<cl_uint> counts = count(insert, all);
-    const BuildReport counted =
-        std::exchange(all, {.attempted = all.attempted, .rejected = all.rejected, .passes = 1});
-    const auto whole = [this]() noexcept {
-        reading_slice_ = false;
+    const auto take_all_cells = [this] {
+        in_slices_ = reading_slice_ = false;
         storage_->set_slice({0, shape_.cells()});
-        empty_after_failure(false);
     };
     try {
+        // An automatic storage has slots for the records of all cells, not for the budget.
+        if (chooser_)
+            use(chooser_->storage() == Storage::fixed ? Storage::linked : chooser_->storage());
+        in_slices_ = true;
+        const std::vector<cl_uint> counts = count(insert, all);
+        const BuildReport counted =
+            std::exchange(all, {.attempted = all.attempted, .rejected = all.rejected, .passes = 1});
         for (std::uint64_t first = 0; first < shape_.cells();) {
             const PlannedSlice slice = plan_slice(first, counts);
             storage_->clear();
@@ -261,11 +294,13 @@ BuildReport ListsCore::build_slices(const std::function<void()>& insert,
             reading_slice_ = false;
             first += slice.range.cells;
         }
+        take_all_cells();
+        storage_->recover(false);
     } catch (...) {
-        whole();
+        take_all_cells();
+        empty_after_failure(false);
         throw;
     }
-    whole();
     return all;
 }
 

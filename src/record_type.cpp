@@ -42,9 +42,9 @@ std::string layout_checks(const RecordType& record) {
 
 /// Whether record a comes before record b: by the member that `key` means, then by all members.
 std::string order_definition(const RecordType& record) {
-    std::string text = "static inline int CELLIST_OVERLOAD cellist_record_before(" + record.name +
-                       " a, " + record.name + " b, uint key)\n{\n    ulong x = 0, y = 0;\n" +
-                       "    switch (key) {\n";
+    std::string text = "static inline int CELLIST_OVERLOAD cellist_record_before(struct " +
+                       record.name + " a, struct " + record.name +
+                       " b, uint key)\n{\n    ulong x = 0, y = 0;\n" + "    switch (key) {\n";
     for (const RecordMember& member : record.members)
         if (member.is_scalar)
             text += "    case cellist_key_" + member.name + ": x = cellist_order(a." + member.name +
@@ -55,6 +55,40 @@ std::string order_definition(const RecordType& record) {
             text += "    x = cellist_order(a." + path + "), y = cellist_order(b." + path +
                     ");\n    if (x != y) return x < y;\n";
     return text + "    return 0;\n}\n";
+}
+
+/// The words by which a record is ranked, and their number: those of a member, then those of all.
+std::string rank_definition(const RecordType& record) {
+    std::string members = "    switch (member) {\n";
+    std::string lengths = members;
+    for (std::size_t i = 0; i < record.members.size(); ++i) {
+        const RecordMember& member = record.members[i];
+        if (!member.is_scalar) continue;
+        const std::string begin = "    case " + std::to_string(i) + ": ";
+        const std::string words = "cellist_key_words(record." + member.name + ")";
+        members += begin + "if (word < " + words + ") return cellist_key_word(record." +
+                   member.name + ", word); word -= " + words + "; break;\n";
+        lengths += begin + "words = cellist_key_words(record->" + member.name + "); break;\n";
+    }
+    members += "    default: break;\n    }\n";
+    lengths += "    default: break;\n    }\n";
+    for (std::size_t i = 0; i < record.members.size(); ++i) {
+        // The member itself is not ranked again.
+        const RecordMember& member = record.members[i];
+        const std::string other = "    if (member != " + std::to_string(i) + ") {\n";
+        if (member.is_scalar) members += other, lengths += other;
+        for (const std::string& path : member.scalars) {
+            const std::string words = "cellist_key_words(record." + path + ")";
+            members += "    if (word < " + words + ") return cellist_key_word(record." + path +
+                       ", word);\n    word -= " + words + ";\n";
+            lengths += "    words += cellist_key_words(record->" + path + ");\n";
+        }
+        if (member.is_scalar) members += "    }\n", lengths += "    }\n";
+    }
+    return "static inline uint CELLIST_OVERLOAD cellist_rank_word(struct " + record.name +
+           " record, uint member, uint word)\n{\n" + members + "    return 0;\n}\n" +
+           "static inline uint CELLIST_OVERLOAD cellist_rank_length(struct " + record.name +
+           "* record, uint member)\n{\n    uint words = 0;\n" + lengths + "    return words;\n}\n";
 }
 
 }  // namespace
@@ -95,6 +129,8 @@ std::string Definitions::source() const {
 
     for (const RecordType& record : records) {
         text += struct_definition(record) + layout_checks(record) + order_definition(record);
+        text += "#if CELLIST_MODES & (CELLIST_RANKING | CELLIST_CHOOSING)\n" +
+                rank_definition(record) + "#endif\n";
         text += "CELLIST_DEFINE_NODE(" + record.name + ", " +
                 std::to_string(node_layout(record).alignment) + ")\n";
         text += "CELLIST_DEFINE_RECORD(" + record.name + ")\n";

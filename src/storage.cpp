@@ -24,6 +24,9 @@ cl_uint shard_bits_for(std::uint64_t capacity_nodes, Allocation allocation) {
     return bits;
 }
 
+/// Builds that grow as often as this end with an error.
+constexpr std::uint32_t growths_max = 8;
+
 std::string mebibytes(std::uint64_t bytes) {
     return std::to_string(bytes) + " bytes (" + std::to_string(bytes >> 20) + " MiB)";
 }
@@ -40,7 +43,6 @@ ListStorage::ListStorage(std::shared_ptr<DeviceState> device, const Definitions&
       mode_(mode),
       node_bytes_(node_bytes),
       slice_{0, shape.cells()} {
-    definitions_.modes = mode;
     const std::uint64_t head_bytes = head_words * sizeof(cl_uint);
     const std::uint64_t allocation = device_->info.max_allocation_bytes;
     if (head_bytes > allocation)
@@ -64,7 +66,9 @@ void ListStorage::add_to(Arguments& arguments) const {
         mode_,
         slots_,
         static_cast<cl_uint>(slice_.first_cell),
-        open_ ? static_cast<cl_uint>(slice_.cells) : 0};
+        open_ ? static_cast<cl_uint>(slice_.cells) : 0,
+        rank_member_,
+        rank_words_};
     arguments.add_nodes(nodes_.cl(), record().name);
     arguments.add(heads_.cl());
     arguments.add(shards_.cl());
@@ -76,6 +80,36 @@ std::uint64_t ListStorage::bytes_with(std::uint64_t capacity_nodes) const {
     const std::uint64_t shards =
         (std::uint64_t{1} << shard_bits_for(capacity_nodes, options_.allocation)) + 1;
     return heads_.size_bytes() + capacity_nodes * node_bytes_ + shards * sizeof(cellist_shard);
+}
+
+std::uint64_t ListStorage::bytes() const {
+    return bytes_with(capacity_nodes_) +
+           (spare_ ? spare_->nodes.size_bytes() + spare_->heads.size_bytes() : 0);
+}
+
+const ListStorage::Spare* ListStorage::spare() {
+    if (spare_) return &*spare_;
+    const std::uint64_t heads = mode_ == CELLIST_LINKED ? shape_.cells() : 0;
+    const std::uint64_t all = bytes() + nodes_.size_bytes() + heads * sizeof(cl_uint);
+    if (all > options_.budget_bytes || all > device_->info.global_memory_bytes) return nullptr;
+    try {
+        Spare made{Memory(device_, capacity_nodes_, node_bytes_, "second pool"),
+                   Memory(device_, heads, sizeof(cl_uint), "second head buffer")};
+        // Some drivers find out only at the first use whether they have the memory.
+        constexpr cl_uchar zero = 0;
+        for (Memory* memory : {&made.nodes, &made.heads})
+            memory->fill(&zero, sizeof zero, std::min<std::uint64_t>(memory->size_bytes(), 1));
+        spare_ = std::move(made);
+    } catch (const OpenClError& error) {
+        if (!out_of_memory(error)) throw;
+        return nullptr;
+    }
+    return &*spare_;
+}
+
+void ListStorage::exchange_spare() noexcept {
+    std::swap(nodes_, spare_->nodes);
+    std::swap(heads_, spare_->heads);
 }
 
 std::optional<std::string> ListStorage::refusal(std::uint64_t capacity_nodes) const {
@@ -119,6 +153,7 @@ void ListStorage::allocate_pool(std::uint64_t capacity_nodes) {
     // The old nodes go first, so that the device never holds both pools.
     capacity_nodes_ = 0;
     nodes_ = Memory();
+    spare_.reset();
     const cl_uint bits = shard_bits_for(capacity_nodes, options_.allocation);
     shards_ = Memory(device_, (std::uint64_t{1} << bits) + 1, sizeof(cellist_shard), "counters");
     shard_bits_ = bits;
@@ -147,13 +182,23 @@ void ListStorage::clear_counters() {
     shards_.fill(&zero, sizeof zero, shards_.size_bytes());
 }
 
-void ListStorage::fill_heads(cl_uint value, std::uint64_t first_word) {
-    const std::uint64_t offset = first_word * sizeof value;
-    if (offset == heads_.size_bytes()) return;
+void ListStorage::fill_heads(cl_uint value, std::uint64_t first_word, std::uint64_t words) {
+    const std::uint64_t all = heads_.size_bytes() / sizeof value;
+    words = std::min(words, all - first_word);
+    if (words == 0) return;
     const cl_int code =
-        clEnqueueFillBuffer(device_->ordered_queue()(), heads_.cl()(), &value, sizeof value, offset,
-                            heads_.size_bytes() - offset, 0, nullptr, nullptr);
+        clEnqueueFillBuffer(device_->ordered_queue()(), heads_.cl()(), &value, sizeof value,
+                            first_word * sizeof value, words * sizeof value, 0, nullptr, nullptr);
     if (code != CL_SUCCESS) throw OpenClError("clEnqueueFillBuffer", code);
+}
+
+void ListStorage::grow_pool(std::uint64_t capacity_nodes, const BuildReport& report) {
+    if (++growths_ == growths_max)
+        throw OverflowError("the kernel inserted more records in each of " +
+                                std::to_string(report.passes) +
+                                " passes: it must insert the same records every time",
+                            report);
+    allocate_pool(capacity_nodes);
 }
 
 void ListStorage::update(BuildReport& report, const Counters& counters, std::uint64_t stored) {
@@ -175,6 +220,11 @@ cl::Event ListStorage::find(Findings& findings, Kernel& kernel, const Arguments&
     return findings.memory.read_later(&findings.found, sizeof findings.found);
 }
 
+void ListStorage::start() {
+    growths_ = 0;
+    start_anew();
+}
+
 void ListStorage::begin_pass() {
     prepare_pass();
     open_ = true;
@@ -190,9 +240,19 @@ bool ListStorage::review(BuildReport& report) {
     return review_pass(report);
 }
 
+void ListStorage::release_pool() noexcept {
+    settle();
+    if (!released_nodes_) released_nodes_ = capacity_nodes_;
+    capacity_nodes_ = 0;
+    nodes_ = Memory();
+    spare_.reset();
+}
+
 void ListStorage::recover(bool without_pool) {
     settle();
     open_ = false;
+    if (released_nodes_ && options_.overflow != Overflow::grow) allocate_pool(*released_nodes_);
+    released_nodes_.reset();
     make_whole(without_pool);
     clear();
 }
@@ -201,9 +261,11 @@ std::unique_ptr<ListStorage> make_storage(std::shared_ptr<DeviceState> device,
                                           const Definitions& definitions, const Shape& shape,
                                           const ListsOptions& options) {
     const bool fixed = options.storage == Storage::fixed;
+    if (options.overflow == Overflow::keep_nearest && !fixed)
+        throw Error("Overflow::keep_nearest needs Storage::fixed");
     if (options.overflow != Overflow::grow &&
         !(fixed ? options.slots.has_value() : options.capacity_nodes.has_value()))
-        throw Error(std::string("Overflow::stop and Overflow::drop need ") +
+        throw Error(std::string("an Overflow other than grow needs ") +
                     (fixed ? "slots in Storage::fixed" : "capacity_nodes"));
     switch (options.storage) {
         case Storage::linked:
@@ -211,16 +273,23 @@ std::unique_ptr<ListStorage> make_storage(std::shared_ptr<DeviceState> device,
         case Storage::counted:
             return std::make_unique<CountedStorage>(std::move(device), definitions, shape, options);
         case Storage::fixed:
+            if (options.overflow == Overflow::keep_nearest)
+                return std::make_unique<NearestStorage>(std::move(device), definitions, shape,
+                                                        options);
             return std::make_unique<FixedStorage>(std::move(device), definitions, shape, options);
+        case Storage::automatic:
+            break;
     }
     throw Error("unknown storage");
 }
 
-Kernel ListStorage::kernel(const std::string& name, std::string_view source) const {
+Kernel ListStorage::kernel(const std::string& name, std::string_view source, cl_uint mode) const {
+    Definitions definitions = definitions_;
+    definitions.modes = mode;
     return {device_,
             Source{.text = "#define CELLIST_RECORD " + record().name + "\n#line 1 \"" + name +
                            ".cl\"\n" + std::string(source)},
-            name, definitions_};
+            name, definitions};
 }
 
 }  // namespace cellist::detail

@@ -19,6 +19,12 @@
 
 namespace cellist::detail {
 
+/// The kernel did not insert the same records again where that is needed.
+class UnrepeatableError : public Error {
+public:
+    using Error::Error;
+};
+
 /// How a container keeps its nodes: the buffers, and the passes of a build. One class a storage; the
 /// device's side of all of them is kernels/cellist/lists.clh.
 class ListStorage {
@@ -32,7 +38,7 @@ public:
 
     /// A build is start(), then passes until review() says that the lists are complete; see build.cpp.
     /// More passes may follow, where another container needs them: they fill the lists anew.
-    virtual void start() {}
+    void start();
     /// Enqueues what the next run of the kernels needs; from now on kernels may insert. Does not
     /// block.
     void begin_pass();
@@ -47,8 +53,11 @@ public:
 
     /// Blocks until nothing is on its way to this object's memory. Comes before the destructor.
     void settle() noexcept { reading_.settle(); }
-    /// Makes what a failed build may have left undone, with empty lists. The pool is empty afterwards
-    /// if there was none, or if `without_pool` says so.
+    /// Gives the nodes' memory back, before another storage takes this one's place. What is left can
+    /// only be destroyed, or be recovered. Blocks as settle() does.
+    void release_pool() noexcept;
+    /// Makes what a failed build may have left undone, with empty lists. A pool that grows is empty
+    /// afterwards if there was none, or if `without_pool` says so.
     void recover(bool without_pool);
 
     /// Looks for links, offsets and counts that do not belong together. The result may be asked for
@@ -70,7 +79,20 @@ public:
 
     [[nodiscard]] std::uint64_t capacity_nodes() const { return capacity_nodes_; }
     /// Device memory of all buffers.
-    [[nodiscard]] std::uint64_t bytes() const { return bytes_with(capacity_nodes_); }
+    [[nodiscard]] std::uint64_t bytes() const;
+    [[nodiscard]] std::uint64_t cells() const { return shape_.cells(); }
+    [[nodiscard]] const cl::Buffer& nodes() const { return nodes_.cl(); }
+
+    /// Memory for as many nodes as the pool has, and for their heads where lists are linked.
+    struct Spare {
+        Memory nodes;
+        Memory heads;
+    };
+    /// Makes it the first time, and keeps it as long as the pool. Null where the budget or the device
+    /// has no room for it.
+    [[nodiscard]] const Spare* spare();
+    /// The spare nodes and heads take the place of the pool's, of linked lists, and these become spare.
+    void exchange_spare() noexcept;
     /// The mode in which the lists are read.
     [[nodiscard]] cl_uint mode() const { return mode_; }
     /// Records in the lists.
@@ -89,6 +111,7 @@ protected:
                 const Shape& shape, const ListsOptions& options, cl_uint mode,
                 std::size_t node_bytes, std::uint64_t head_words);
 
+    virtual void start_anew() {}
     virtual void prepare_pass() { clear(); }
     virtual bool finish_pass() = 0;
     virtual bool review_pass(BuildReport& report) = 0;
@@ -100,19 +123,28 @@ protected:
     [[nodiscard]] std::optional<std::string> refusal(std::uint64_t capacity_nodes) const;
     /// Makes a pool of this capacity; the nodes of the old one are gone. Throws Error.
     void allocate_pool(std::uint64_t capacity_nodes);
-    [[nodiscard]] bool has_pool() const { return nodes_.cl()() != nullptr; }
+    /// Whether recover() leaves an empty pool. Under other policies than to grow, the pool stays the one
+    /// of the options, so that later builds hold as much.
+    [[nodiscard]] bool empties_pool(bool without_pool) const {
+        return options_.overflow == Overflow::grow && (without_pool || nodes_.cl()() == nullptr);
+    }
+    /// allocate_pool() for what a build demands. Throws OverflowError where builds demand more in every
+    /// pass: the kernel does not repeat itself.
+    void grow_pool(std::uint64_t capacity_nodes, const BuildReport& report);
     /// Enqueues the reading of the counters: they are there when the event has completed.
     [[nodiscard]] cl::Event read_counters(Shards& shards) const;
     [[nodiscard]] static Counters sum(const Shards& shards);
     void clear_counters();
     /// Sets the heads from a word on. Does not block.
-    void fill_heads(cl_uint value, std::uint64_t first_word = 0);
+    void fill_heads(cl_uint value, std::uint64_t first_word = 0,
+                    std::uint64_t words = ~std::uint64_t{0});
     /// A report of the counters.
     void update(BuildReport& report, const Counters& counters, std::uint64_t stored);
     /// Throws OverflowError if the policy or a limit forbids a pool of `demand` nodes.
     void require(std::uint64_t demand, const BuildReport& report) const;
     /// A kernel of the library for this record.
-    [[nodiscard]] Kernel kernel(const std::string& name, std::string_view source) const;
+    [[nodiscard]] Kernel kernel(const std::string& name, std::string_view source,
+                                cl_uint mode) const;
 
     /// What a validating kernel finds, on its way to the host.
     struct Findings {
@@ -131,14 +163,19 @@ protected:
     cl_uint mode_;
     std::size_t node_bytes_;
     std::uint64_t capacity_nodes_ = 0;
+    std::optional<std::uint64_t> released_nodes_;  ///< the capacity that release_pool() gave back
     std::uint64_t stored_ = 0;
     cl_uint shard_bits_ = 0;
     cl_uint slots_ = 0;
+    cl_uint rank_member_ = 0;
+    cl_uint rank_words_ = 0;
+    std::uint32_t growths_ = 0;  ///< of this build
     Slice slice_;
     bool open_ = false;  ///< for inserts
     Memory heads_;
     Memory nodes_;
     Memory shards_;
+    std::optional<Spare> spare_;
     Shards counters_;  ///< of the last pass
     Arrival reading_;  ///< what a review waits for: the last reading of the pass
 };

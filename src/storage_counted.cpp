@@ -65,12 +65,12 @@ bool CountedStorage::review_pass(BuildReport& report) {
     update(report, filled, kept);
     const std::uint64_t unfilled = filled_.found.unfilled;
     if (unfilled > 0 || filled.dropped != demand - kept || filled.rejected != counting.rejected)
-        throw Error("the kernel inserted " +
-                    std::to_string(kept - unfilled + filled.dropped + filled.rejected) +
-                    " records when it filled the lists, and " +
-                    std::to_string(demand + counting.rejected) +
-                    " or others when it counted them: it must insert the same records every time, "
-                    "or use Storage::linked");
+        throw UnrepeatableError(
+            "the kernel inserted " +
+            std::to_string(kept - unfilled + filled.dropped + filled.rejected) +
+            " records when it filled the lists, and " + std::to_string(demand + counting.rejected) +
+            " or others when it counted them: it must insert the same records every time, "
+            "or use Storage::linked");
     return true;
 }
 
@@ -83,7 +83,7 @@ void CountedStorage::make_room(const BuildReport& report) {
             throw OverflowError("a list of more than " + std::to_string(CELLIST_CELL_COUNT_MAX) +
                                     " records is over the limit of Storage::counted",
                                 report);
-        allocate_pool(demand);
+        grow_pool(demand, report);
     }
     scan_.write_offsets(heads_.cl(), capacity_nodes_);
 }
@@ -91,7 +91,7 @@ void CountedStorage::make_room(const BuildReport& report) {
 void CountedStorage::make_whole(bool without_pool) {
     counted_ = false;
     mode_ = CELLIST_CONTIGUOUS;
-    if (without_pool || !has_pool()) allocate_pool(0);
+    if (empties_pool(without_pool)) allocate_pool(0);
 }
 
 std::uint64_t CountedStorage::nodes_for(std::uint64_t total, std::uint64_t, std::uint64_t) const {
@@ -116,7 +116,8 @@ std::vector<cl_uint> CountedStorage::counts(BuildReport& report) {
 
 cl::Event CountedStorage::find_unfilled(Findings& findings) {
     if (!validate_)
-        validate_.emplace(kernel("cellist_validate_contiguous", kernels::validate_contiguous_cl));
+        validate_.emplace(
+            kernel("cellist_validate_contiguous", kernels::validate_contiguous_cl, mode_));
     Arguments arguments;
     add_to(arguments);
     return find(findings, *validate_, arguments);

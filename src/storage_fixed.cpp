@@ -60,12 +60,14 @@ bool FixedStorage::review_pass(BuildReport& report) {
                                 std::to_string(slice_.cells) +
                                 " cells are too many (use Storage::linked or counted): " + *reason,
                             report);
-    set_slots(longest);
+    slots_ = 0;
+    grow_pool(nodes_with(longest), report);
+    slots_ = static_cast<cl_uint>(longest);
     return false;
 }
 
 void FixedStorage::make_whole(bool without_pool) {
-    if (without_pool || !has_pool() || capacity_nodes_ < nodes_with(slots_)) set_slots(0);
+    if (empties_pool(without_pool) || capacity_nodes_ < nodes_with(slots_)) set_slots(0);
 }
 
 void FixedStorage::set_slice(const Slice& slice) {

@@ -41,12 +41,12 @@ bool LinkedStorage::review_pass(BuildReport& report) {
 
     const std::uint64_t demand = report.stored + report.dropped;
     require(demand, report);
-    allocate_pool(demand);
+    grow_pool(demand, report);
     return false;
 }
 
 void LinkedStorage::make_whole(bool without_pool) {
-    if (without_pool || !has_pool()) allocate_pool(0);
+    if (empties_pool(without_pool)) allocate_pool(0);
 }
 
 std::uint64_t LinkedStorage::nodes_for(std::uint64_t total, std::uint64_t, std::uint64_t) const {
@@ -69,7 +69,7 @@ std::function<Validation()> LinkedStorage::validate() {
     check->reached = Memory(device_, (capacity_nodes_ + 31) / 32, sizeof zero, "validation buffer");
     check->reached.fill(&zero, sizeof zero, check->reached.size_bytes());
     if (!validate_)
-        validate_.emplace(kernel("cellist_validate_linked", kernels::validate_linked_cl));
+        validate_.emplace(kernel("cellist_validate_linked", kernels::validate_linked_cl, mode_));
     Arguments arguments;
     add_to(arguments);
     arguments.add(check->reached.cl());

@@ -32,7 +32,6 @@ public:
     CountedStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
                    const Shape& shape, const ListsOptions& options);
     void clear() override;
-    void start() override { counted_ = false; }
     std::function<Validation()> validate() override;
     std::uint64_t nodes_for(std::uint64_t total, std::uint64_t longest,
                             std::uint64_t cells) const override;
@@ -43,6 +42,7 @@ public:
     [[nodiscard]] std::vector<cl_uint> counts(BuildReport& report);
 
 private:
+    void start_anew() override { counted_ = false; }
     void prepare_pass() override;
     bool finish_pass() override;
     bool review_pass(BuildReport& report) override;
@@ -82,6 +82,38 @@ private:
 
     CellScan scan_;
     CellScan::Totals in_slots_;  ///< of the last pass: records in slots, longest list
+};
+
+/// A number of slots for each cell, for the records that come first. Passes over the same kernels: one
+/// ranks a word of their keys, one fills the slots; the next word follows where that leaves a tie.
+class NearestStorage final : public ListStorage {
+public:
+    NearestStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
+                   const Shape& shape, const ListsOptions& options);
+    void clear() override;
+    std::function<Validation()> validate() override;
+    std::uint64_t nodes_for(std::uint64_t total, std::uint64_t longest,
+                            std::uint64_t cells) const override;
+    void reserve(std::uint64_t, std::uint64_t) override {}
+
+private:
+    void start_anew() override;
+    void prepare_pass() override;
+    bool finish_pass() override;
+    bool review_pass(BuildReport& report) override;
+    void make_whole(bool without_pool) override;
+
+    void prepare_ranking();
+    void run(std::optional<Kernel>& kernel, const char* name, const Memory* choice = nullptr);
+    [[nodiscard]] std::uint64_t row(std::uint64_t number) const { return number * shape_.cells(); }
+
+    CellScan scan_;
+    bool ranked_ = false;  ///< the next pass fills the slots
+    CellScan::Totals kept_;
+    cellist_choice choice_{};
+    Memory choice_memory_;
+    std::optional<Kernel> set_thresholds_;
+    std::optional<Kernel> check_choice_;
 };
 
 }  // namespace cellist::detail

@@ -75,6 +75,34 @@ TEST_CASE("the line of an error does not depend on the includes and types before
     }
 }
 
+TEST_CASE("sources and logs of any length and content end in a kernel or in the library's error") {
+    constexpr auto kernel = "kernel void nothing(void) {}\n";
+    const std::string blanks(1 << 20, ' '), name(1 << 18, 'a');
+    for (const std::string& text :
+         {blanks, "//" + blanks + "\n", blanks + "#" + blanks + "include <cellist/lists.clh>\n",
+          "//#include <cellist/" + name + "\n"})
+        Kernel(device(), text + kernel, "nothing");
+    for (const std::string& text : {"cellist_node_" + name, "cellist_key_" + name,
+                                    "cellist_layout_of_" + name, "<kernel>:" + std::string(99, '9'),
+                                    std::string("<kernel>:0 <kernel>: <kernel>:x cellist_node_")}) {
+        const auto error =
+            error_of([&] { Kernel(device(), "#error " + text + "\n" + kernel, "nothing"); });
+        REQUIRE_FALSE(std::string(error.what()).empty());
+    }
+}
+
+TEST_CASE("the name of a file may have any characters") {
+    for (const std::string& name : {std::string("a \"quoted\" name"), std::string("back\\slash\\"),
+                                    std::string("two\nlines"), std::string("nul\0x", 5)}) {
+        INFO(name);
+        const Source source{.text = "kernel void broken(void) { oops; }\n", .file_name = name};
+        const auto error = error_of<OpenClError>([&] { Kernel(device(), source, "broken"); });
+        INFO(error.what());
+        REQUIRE(contains(error.log(), "oops"));
+        Kernel(device(), Source{.text = "kernel void good(void) {}", .file_name = name}, "good");
+    }
+}
+
 TEST_CASE("an unknown kernel name is an error") {
     const Lists<Item> lists(device(), {5});
     const auto error = error_of([&] { Kernel(device(), insert_one, "insert_two", lists); });

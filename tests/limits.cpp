@@ -28,6 +28,14 @@ TEST_CASE("a shape over the device's limit is refused, naming the shape and the 
     REQUIRE(contains(error.what(), std::to_string(limit)));
 }
 
+TEST_CASE("dimensions that a shape does not have are of one cell") {
+    const Shape shape{5, 0};
+    REQUIRE(shape.extent(1) == 0);
+    for (const std::size_t dimension :
+         {std::size_t{2}, std::size_t{3}, std::size_t{4}, ~std::size_t{0}})
+        REQUIRE(shape.extent(dimension) == 1);
+}
+
 TEST_CASE("a shape that cannot be indexed is refused, naming the value and the limit") {
     const auto message = [](std::initializer_list<std::uint64_t> extents) {
         return std::string(error_of([&] { Shape shape(extents); }).what());

@@ -27,7 +27,7 @@ struct Scene {
 /// Downloads every slice, and requires that slices are in order, cover all cells, and leave no record
 /// in the cells of other slices.
 struct Collected {
-    explicit Collected(Lists<Item>& lists) : lists(lists) {}
+    explicit Collected(Lists<Item>& from) : lists(from) {}
     void operator()(const Slice& slice) {
         REQUIRE(slice.first_cell == next_cell);
         REQUIRE(slice.cells > 0);
@@ -154,7 +154,7 @@ TEST_CASE("an error inside of a slice leaves an empty container") {
     CELLIST_EACH_STORAGE(storage);
     CELLIST_RANDOM(random, 233u);
     const Inserts<Item> inserts = random_inserts(4096, 50, random);
-    Lists<Item> lists(device(), {50}, {.storage = storage, .budget_bytes = 20'000});
+    Lists<Item> lists(device(), {50}, {.storage = storage, .budget_bytes = 10'000});
     Scene scene(lists, inserts);
     const auto insert = [&] { scene.insert(lists); };
     int calls = 0;

@@ -51,6 +51,8 @@ TEST_CASE("the memory of a container is its heads, its nodes and its counters") 
         case Storage::fixed:
             REQUIRE(bytes(100, 7) == counters + 100 * 4 + 100 * 7 * 8);
             break;
+        case Storage::automatic:
+            break;
     }
 }
 

@@ -193,5 +193,51 @@ TEST_CASE("records of many members and padding are inserted, sorted and download
     }
 }
 
+struct node {
+    cl_float size;
+    cl_uint next;
+};
+CELLIST_STRUCT(node, size, next);
+struct record {
+    cl_float size;
+    cl_uint next;
+};
+CELLIST_STRUCT(record, size, next);
+struct key {
+    cl_float size;
+    cl_uint next;
+};
+CELLIST_STRUCT(key, size, next);
+
+/// Inserts 9, 8, ... 0 into one cell, and takes the three nearest.
+template <class T>
+void require_nearest() {
+    const std::string name = DeviceType<T>::name();
+    INFO(name);
+    Inserts<T> inserts;
+    for (cl_uint i = 0; i < 10; ++i) inserts.add(0, {static_cast<cl_float>(9 - i), i});
+    for (const Storage storage : {Storage::linked, Storage::counted}) {
+        Lists<T> lists(device(), {1}, {.storage = storage});
+        Inserter(lists).build(lists, inserts);
+        lists.sort(&T::size);
+        REQUIRE(lists.download().cell(0)[3].next == 6);
+        const Buffer<T> out(device(), 3);
+        Kernel(device(),
+               "kernel void nearest(CELLIST_LISTS(" + name + ", lists), global " + name +
+                   "* to)\n{\n    " + name +
+                   " best[3];\n    cellist_nearest(lists, 0, size, 3, best);\n"
+                   "    for (int i = 0; i < 3; ++i) to[i] = best[i];\n}\n",
+               "nearest", lists)
+            .run(1, lists, out);
+        REQUIRE(out.download()[2].next == 7);
+    }
+}
+
+TEST_CASE("a struct may be called like a variable of the library's kernels") {
+    require_nearest<node>();
+    require_nearest<record>();
+    require_nearest<key>();
+}
+
 }  // namespace
 }  // namespace cellist::test

@@ -69,10 +69,24 @@ void drop(const cellist::Device& device) {
     check(samples.validate().ok(), "every list is valid");
 }
 
+void keep_nearest(const cellist::Device& device) {
+    cellist::Lists<Sample> nearest(device, {100},
+                                   {.storage = cellist::Storage::fixed,
+                                    .overflow = cellist::Overflow::keep_nearest,
+                                    .slots = 4,
+                                    .nearest_by = "value"});
+    cellist::Kernel sample(device, source, "sample", nearest);
+    cellist::BuildReport report = nearest.build(sample, 50'000, cl_uint{100});
+    check(report.stored == 400 && report.dropped == 49'600, "four of each cell");
+    for (const Sample& kept : nearest.download().records())
+        check(kept.value < 400, "the least values are kept");
+}
+
 int main() {
     cellist::Device device = cellist::Device::choose();
     grow(device);
     grow_within_a_budget(device);
     stop(device);
     drop(device);
+    keep_nearest(device);
 }

@@ -58,6 +58,12 @@ int main() {
     cellist::Kernel sample(device, source, "sample", samples);
     samples.build(sample, 100'000);
 
+    cellist::Lists<Sample> chosen(device, {1000},
+                                  {.storage = cellist::Storage::automatic, .expected_reads = 3});
+    for (int frame = 0; frame < 14; ++frame) chosen.build(sample, 100'000);
+    std::cout << chosen.storage_reason() << '\n';
+    check(chosen.download().records().size() == 100'000, "all samples are stored");
+
     cellist::Packed<Sample> packed = samples.pack();
     cellist::Kernel sums(device, source, "sums", cellist::type<Sample>);
     cellist::Buffer<cl_float> result(device, samples.shape().cells());

@@ -1,11 +1,11 @@
 #include <algorithm>
-#include <exception>
 #include <iostream>
 #include <string>
 #include <vector>
 
 #include <cellist/cellist.hpp>
 
+#include "command_line.hpp"
 #include "comparison.hpp"
 #include "frame.hpp"
 #include "image.hpp"
@@ -124,15 +124,12 @@ void run(const oit::Options& options) {
 }  // namespace
 
 int main(int count, char** arguments) {
-    try {
+    return support::run_program("cellist-oit", [&] {
         const oit::Options options = oit::parse_options(count, arguments);
         if (options.help)
             std::cout << options.help_text;
         else
             run(options);
-        return 0;
-    } catch (const std::exception& error) {
-        std::cerr << "cellist-oit: " << error.what() << '\n';
-        return 1;
-    }
+        return true;
+    });
 }

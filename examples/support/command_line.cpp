@@ -52,6 +52,8 @@ std::string to_string(cellist::Storage storage) {
             return "counted";
         case cellist::Storage::fixed:
             return "fixed";
+        case cellist::Storage::automatic:
+            return "automatic";
     }
     return "unknown";
 }

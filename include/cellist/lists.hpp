@@ -5,9 +5,9 @@
 #include <concepts>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -70,9 +70,7 @@ public:
 
     /// The same for several inserting kernels: `insert` enqueues all of them with Kernel::run, and is
     /// called again after the pool has grown.
-    BuildReport build(std::invocable auto&& insert) {
-        return finish(*detail::ListsCore::start_build({core_.get()}, std::ref(insert)));
-    }
+    BuildReport build(std::invocable auto&& insert) { return core_->build(std::ref(insert)); }
 
     /// Starts the same and does not block. The event completes after the first pass; get() runs more
     /// of them if the pool was too small, or throws. Until then the lists are incomplete, unless the
@@ -93,7 +91,8 @@ public:
     [[nodiscard]] Pending<BuildReport> build_async(std::invocable auto&& insert) {
         const auto build =
             detail::ListsCore::start_build({core_.get()}, std::forward<decltype(insert)>(insert));
-        return {core_->marker(), [core = core_, build] { return finish(*build); }};
+        return {detail::ListsCore::marker(*build),
+                [core = core_, build] { return finish(*build); }};
     }
 
     /// Builds lists that are more than the pool may hold (by the budget, by the device's largest
@@ -113,20 +112,40 @@ public:
 
     /// Sorts every list by a scalar member: cellist_for_each then visits the least first, or the
     /// greatest. Records with equal keys are ordered by their remaining members, ascending, in order
-    /// of declaration, so
-    /// the result depends on the records alone and not on the order of insertion. Floats are ordered
-    /// -inf < ... < -0 < +0 < ... < +inf < NaN. Lists have any length. The
-    /// first call for a member compiles a kernel; does not block otherwise.
+    /// of declaration, so the result depends on the records alone and not on the order of insertion.
+    /// Floats are ordered -inf < ... < -0 < +0 < ... < +inf < NaN. Lists have any length.
+    ///
+    /// Linked lists move to a second pool, each in one piece; it is counted in pool_bytes() and kept for
+    /// the next sort. Lists of some hundred nodes or more need a second pool in the other storages as
+    /// well. Where the budget or the device has no memory for it, one work-item sorts each of these
+    /// lists in its place, slowly.
+    ///
+    /// Blocks until it is known how long the lists are. The first calls for a member compile kernels.
+    /// Throws Error if links lead in circles; whatever fails, the lists hold what they held.
     template <class M>
     cl::Event sort(M T::*member, Order order = Order::ascending) {
-        return core_->sort("record." + detail::member_name(member), order,
-                           sizeof(M) <= 4 ? 32 : 64);
+        return sort_by_member(member, order, all_nodes);
     }
 
     /// The same by an OpenCL C expression of `record`, of integer or float type, such as
-    /// "record.x * record.x + record.y * record.y". Throws OpenClError where it does not compile.
+    /// "record.x * record.x + record.y * record.y". Throws OpenClError where it does not compile, and
+    /// Error where it is not one expression of up to 1024 characters: comments, braces, statements,
+    /// text and directives are refused. Its value must be defined: after a division by 0 the order is
+    /// not, and records may be lost.
     cl::Event sort_by(const std::string& expression, Order order = Order::ascending) {
-        return core_->sort(expression, order, 64);
+        return core_->sort(expression, 64, order, all_nodes);
+    }
+
+    /// Sorts the first `count` nodes of every list only: those that sort() would put there. The others
+    /// follow in any order. Takes less time than sort() for up to 64 nodes of lists of up to 4,096
+    /// nodes; otherwise it is the same.
+    template <class M>
+    cl::Event partial_sort(M T::*member, std::uint32_t count, Order order = Order::ascending) {
+        return sort_by_member(member, order, count);
+    }
+    cl::Event partial_sort_by(const std::string& expression, std::uint32_t count,
+                              Order order = Order::ascending) {
+        return core_->sort(expression, 64, order, count);
     }
 
     /// How long the lists are. Blocks.
@@ -168,9 +187,7 @@ public:
 
     /// A copy of all lists in device memory, one behind the other, for kernels that leave the
     /// container. Does not block.
-    [[nodiscard]] Packed<T> pack() const {
-        return pack<T>(DeviceType<T>::name(), "record");
-    }
+    [[nodiscard]] Packed<T> pack() const { return pack<T>(DeviceType<T>::name(), "record"); }
     /// The same of a single member: an array of its own where a reader needs only the key.
     template <class M>
     [[nodiscard]] Packed<M> pack(M T::*member) const {
@@ -194,18 +211,30 @@ public:
     [[nodiscard]] std::uint64_t capacity_nodes() const { return core_->capacity_nodes(); }
     /// Device memory of heads, nodes and counters.
     [[nodiscard]] std::uint64_t pool_bytes() const { return core_->pool_bytes(); }
+    /// The storage in use: in Storage::automatic the one of the last build.
+    [[nodiscard]] Storage storage() const { return core_->storage_in_use(); }
+    /// A sentence for people: which storage the next build takes, and the measurements that speak for it.
+    [[nodiscard]] std::string storage_reason() const { return core_->storage_reason(); }
 
     /// @private
     [[nodiscard]] detail::ListsCore& core() const { return *core_; }
 
 private:
+    static constexpr std::uint32_t all_nodes = std::numeric_limits<std::uint32_t>::max();
+
+    template <class M>
+    cl::Event sort_by_member(M T::*member, Order order, std::uint32_t least) {
+        return core_->sort("record." + detail::member_name(member), sizeof(M) <= 4 ? 32 : 64, order,
+                           least);
+    }
+
     static const BuildReport& finish(detail::Build& build) {
         return detail::ListsCore::finish(build).front();
     }
     template <class V>
     Packed<V> pack(const std::string& type, const std::string& value) const {
         Packed<V> packed{{core_->device(), shape().cells() + 1}, {core_->device(), 0}};
-        const auto allocate = [&](std::uint64_t count) {
+        const auto allocate = [&](std::uint64_t count) -> const cl::Buffer& {
             packed.records = Buffer<V>(core_->device(), count);
             return packed.records.cl();
         };
@@ -248,7 +277,7 @@ template <class... T>
     std::invocable auto&& insert, Lists<T>&... lists) {
     const auto build =
         detail::ListsCore::start_build({&lists.core()...}, std::forward<decltype(insert)>(insert));
-    return {std::get<0>(std::tie(lists...)).core().marker(),
+    return {detail::ListsCore::marker(*build),
             [build] { return detail::reports<sizeof...(T)>(*build); }};
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 
 namespace cellist {
 
@@ -11,6 +12,10 @@ enum class Overflow {
     grow,  ///< enlarge the pool to the exact demand and run again
     stop,  ///< throw OverflowError; the lists are empty
     drop,  ///< keep what fits; the report counts what was dropped, and every list is valid
+    /// Storage::fixed: keep the records of each cell that come first by ListsOptions::nearest_by, one
+    /// for each slot. Equal keys are ordered by the remaining members, so the result does not depend
+    /// on timing. Two passes over the same kernel, two more for each tie-breaking word that is needed.
+    keep_nearest,
 };
 
 /// Which key comes first in a sorted list.
@@ -25,6 +30,9 @@ enum class Storage {
     counted,
     /// One pass: a number of slots for each cell. Fastest where all lists are short.
     fixed,
+    /// One of the others. The first blocking builds of a container try them in turn and measure them;
+    /// the best is kept from then on. See docs/storages.md.
+    automatic,
 };
 
 /// How kernels get nodes from the pool of Storage::linked.
@@ -42,9 +50,13 @@ struct ListsOptions {
     /// Slots for each cell in Storage::fixed at first: 4 under Overflow::grow, which raises it to the
     /// longest list; the other policies need it.
     std::optional<std::uint32_t> slots = {};
+    /// The scalar member that Overflow::keep_nearest ranks by, e.g. "depth".
+    std::string nearest_by = {};
     /// Device memory that heads, nodes and counters may take together.
     std::uint64_t budget_bytes = std::numeric_limits<std::uint64_t>::max();
     Allocation allocation = Allocation::sharded;
+    /// For Storage::automatic: how often kernels walk all lists after each build.
+    std::uint32_t expected_reads = 1;
 };
 
 }  // namespace cellist

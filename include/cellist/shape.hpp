@@ -24,7 +24,7 @@ public:
     [[nodiscard]] std::size_t dimensions() const { return dimensions_; }
     /// Cells along a dimension; 1 for dimensions that the shape does not have.
     [[nodiscard]] std::uint64_t extent(std::size_t dimension) const {
-        return extents_.at(dimension);
+        return dimension < dimensions_ ? extents_[dimension] : 1;
     }
     [[nodiscard]] std::uint64_t cells() const { return cells_; }
 

@@ -37,10 +37,27 @@
 //   COUNTING    counts behind the offsets, as below         none: inserts only count
 //   CONTIGUOUS  cells + 1 offsets, then cells counts        record
 //   FIXED       cells: the inserts so far                   record
+//   RANKING     as below                                    none: inserts only rank their keys
+//   CHOOSING    the same                                    record, as in FIXED
+//
+// RANKING and CHOOSING find the K = slots records of each cell that come first. Their heads are rows
+// of `cells` words:
+//   counts     1   the records in the slots
+//   wanted     1   how many of the records that equal the thresholds are kept
+//   equals     1   how many of them there are
+//   least      K   the K least words of RANKING, ascending
+//   thresholds     one for each word of the key that was ranked
 #define CELLIST_LINKED 1u
 #define CELLIST_COUNTING 2u
 #define CELLIST_CONTIGUOUS 4u
 #define CELLIST_FIXED 8u
+#define CELLIST_RANKING 16u
+#define CELLIST_CHOOSING 32u
+
+// Rows of the heads in modes RANKING and CHOOSING.
+#define CELLIST_ROW_WANTED 1u
+#define CELLIST_ROW_EQUALS 2u
+#define CELLIST_ROW_LEAST 3u
 
 // Passed to kernels by value.
 typedef struct cellist_view {
@@ -52,6 +69,8 @@ typedef struct cellist_view {
     CELLIST_UINT slots;           // nodes of each cell in mode FIXED
     CELLIST_UINT first_cell;      // of the cells that have lists now: 0 but in a build in slices
     CELLIST_UINT open_cells;      // cells from the first on that take inserts: 0 outside of a build
+    CELLIST_UINT rank_member;     // of the record, that it is ranked by
+    CELLIST_UINT rank_words;      // words of the key that have thresholds
 } cellist_view;
 
 // The counters of one shard, alone in its cache line. The struct behind the last shard holds the
@@ -68,6 +87,12 @@ typedef struct cellist_shard {
     CELLIST_UINT padding[8];
 } cellist_shard;
 
+// What a choice among the records of each cell finds, from 0.
+typedef struct cellist_choice {
+    CELLIST_UINT undecided;  // cells with more records that equal the thresholds than slots for them
+    CELLIST_UINT words;      // of a record's key
+} cellist_choice;
+
 // What a validation finds, from 0; each of its kernels says which of these it counts.
 typedef struct cellist_findings {
     CELLIST_UINT broken;
@@ -77,20 +102,24 @@ typedef struct cellist_findings {
     CELLIST_UINT bad_cell_from_end;  // CELLIST_NONE less the lowest cell that is bad, or 0
 } cellist_findings;
 
-// Where a long list is sorted; see sort_long.cl.
-typedef struct cellist_sort_long {
-    CELLIST_UINT cell;
-    CELLIST_UINT length;  // nodes; 0 where the list is not sorted there
-    CELLIST_UINT first;   // first node of a list in one piece
-    CELLIST_UINT chunk;   // first chunk
-} cellist_sort_long;
+// Classes of lists by their length: up to 16, 32, 64, 128, 256 nodes, and more.
+#define CELLIST_SORT_LENGTHS 6u
 
-// What the kernels that sort find out about the lists, from 0.
+// What the kernels that sort find, from 0.
 typedef struct cellist_sort_state {
-    CELLIST_UINT longer;          // lists that are longer than those of the class
-    CELLIST_UINT chunks;          // of all long lists
-    CELLIST_UINT longest_chunks;  // of one list
-    CELLIST_UINT broken;          // lists with links that no build makes
+    CELLIST_UINT nodes;      // that have their places, of linked lists
+    CELLIST_UINT chunks;     // of all long lists
+    CELLIST_UINT longest;    // nodes of a long list
+    CELLIST_UINT broken;     // lists with links that no build makes
+    CELLIST_UINT longer[4];  // lists that were left by each class
+    CELLIST_UINT lengths[CELLIST_SORT_LENGTHS];  // sorted lists by class
 } cellist_sort_state;
+
+// Where a long list is sorted.
+typedef struct cellist_sort_long {
+    CELLIST_UINT length;  // 0 if its links are broken
+    CELLIST_UINT first;   // node
+    CELLIST_UINT chunk;   // its first
+} cellist_sort_long;
 
 #endif

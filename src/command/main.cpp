@@ -1,5 +1,5 @@
-// The `cellist` command: what the OpenCL devices of this machine are, and whether cellist works on
-// them.
+// The `cellist` command: what the OpenCL devices of this machine are, whether cellist works on them,
+// and what its storages cost there.
 
 #include <cstring>
 #include <iostream>
@@ -11,12 +11,14 @@
 
 #include "devices.hpp"
 #include "selftest.hpp"
+#include "tune.hpp"
 
 namespace {
 
 constexpr const char* usage =
     "usage: cellist devices                  the OpenCL devices of this machine\n"
     "       cellist selftest [--device D]    insert, grow, sort and validate against the CPU\n"
+    "       cellist tune [--device D]        measure the storages, for Storage::automatic\n"
     "       cellist --help | --version\n"
     "\n"
     "D is an index or a part of a name, as `cellist devices` shows them. Without it the\n"
@@ -43,7 +45,7 @@ int run(const std::vector<std::string>& arguments) {
         if (arguments.size() > 1) return wrong_usage("unknown argument '" + arguments[1] + "'");
         return cellist::command::devices(std::cout);
     }
-    if (command == "selftest") {
+    if (command == "selftest" || command == "tune") {
         std::optional<std::string> selector;
         for (std::size_t i = 1; i < arguments.size(); ++i) {
             if (arguments[i] == "--device" && i + 1 < arguments.size())
@@ -51,8 +53,10 @@ int run(const std::vector<std::string>& arguments) {
             else
                 return wrong_usage("unknown or incomplete argument '" + arguments[i] + "'");
         }
-        return cellist::command::selftest(
-            selector ? cellist::Device::choose(*selector) : cellist::Device::choose(), std::cout);
+        const cellist::Device device =
+            selector ? cellist::Device::choose(*selector) : cellist::Device::choose();
+        return command == "tune" ? cellist::command::tune(device, std::cout)
+                                 : cellist::command::selftest(device, std::cout);
     }
     return wrong_usage("unknown command '" + command + "'");
 }

@@ -19,6 +19,8 @@ constexpr std::string_view name_of(Storage storage) {
             return "counted";
         case Storage::fixed:
             return "fixed";
+        case Storage::automatic:
+            return "automatic";
     }
     return "unknown";
 }

@@ -19,16 +19,26 @@ public:
         event_ = std::move(event);
         return *this;
     }
-    [[nodiscard]] const cl::Event& event() const { return event_; }
+    /// The event that completes when all has arrived. Not a copy by the bindings: those throw an error
+    /// of their own.
+    [[nodiscard]] cl::Event event() const {
+        const cl_int code = event_() == nullptr ? CL_SUCCESS : clRetainEvent(event_());
+        if (code != CL_SUCCESS) throw OpenClError("clRetainEvent", code);
+        return cl::Event(event_());
+    }
 
     /// Blocks until all has arrived.
-    void wait() const {
-        const cl_int code = event_() == nullptr ? CL_SUCCESS : clWaitForEvents(1, &event_());
+    void wait() {
+        if (event_() == nullptr) return;
+        const cl_int code = clWaitForEvents(1, &event_());
         if (code != CL_SUCCESS) throw OpenClError("clWaitForEvents", code);
+        event_ = cl::Event();
     }
-    /// The same where nobody asks for the data any more.
+    /// The same where nobody asks for the data any more. A wait that fails is tried again; a device that
+    /// cannot be waited for twice is taken for lost, and not to write any more.
     void settle() noexcept {
-        if (event_() != nullptr) clWaitForEvents(1, &event_());
+        if (event_() == nullptr) return;
+        if (clWaitForEvents(1, &event_()) != CL_SUCCESS) clWaitForEvents(1, &event_());
         event_ = cl::Event();
     }
 

@@ -19,8 +19,10 @@ namespace cellist::detail {
 
 class Build;
 class CellScan;
+class Chooser;
 class ListSorter;
 class ListStorage;
+struct Trial;
 
 /// Lists without the record's C++ type: a storage, and the kernels that read and sort any storage.
 /// The kernels see the record by its name in OpenCL C. Stays where it is: a build that is pending
@@ -36,15 +38,26 @@ public:
     /// Enqueues a build of all containers at once: `insert` runs the kernels that fill them.
     static std::shared_ptr<Build> start_build(std::vector<ListsCore*> containers,
                                               std::function<void()> insert);
+    /// Completes after the first passes. The build has failed where this throws.
+    [[nodiscard]] static cl::Event marker(Build& build);
     /// The rest of a build: a report for each container. Blocks.
     static const std::vector<BuildReport>& finish(Build& build);
+
+    /// A build of this container alone, from which Storage::automatic learns. Blocks.
+    BuildReport build(const std::function<void()>& insert);
+    /// The same, with the time that it takes and a read of every record after it. Blocks.
+    BuildReport measure(const std::function<void()>& insert, Trial& trial);
 
     /// Builds a range of cells at a time, and calls `read` for each.
     BuildReport build_slices(const std::function<void()>& insert,
                              const std::function<void(const Slice&)>& read);
 
     void clear();
-    cl::Event sort(const std::string& key, Order order, unsigned bits);
+    /// Sorts by an expression of `record`, whose values have up to 32 or 64 bits; the first `least`
+    /// nodes of each list at least.
+    cl::Event sort(const std::string& key, unsigned key_bits, Order order, std::uint32_t least);
+    /// Divides the work of sorts as on a device of this type; for tests.
+    void sort_as_on(cl_device_type type);
     [[nodiscard]] std::function<Validation()> validate() const;
 
     /// Enqueues the reading of every list's length; `lengths` has them when the event has completed.
@@ -58,7 +71,8 @@ public:
     /// Enqueues the writing of cells + 1 offsets, calls `allocate` with the number of records, and
     /// enqueues the copy of a value of each record, of an OpenCL C type, to the buffer that it
     /// returns, one list behind the other.
-    void pack(const cl::Buffer& offsets, const std::function<cl::Buffer(std::uint64_t)>& allocate,
+    void pack(const cl::Buffer& offsets,
+              const std::function<const cl::Buffer&(std::uint64_t)>& allocate,
               const std::string& type, const std::string& value) const;
 
     [[nodiscard]] const Shape& shape() const { return shape_; }
@@ -66,6 +80,11 @@ public:
     [[nodiscard]] std::uint64_t pool_bytes() const;
     [[nodiscard]] const std::shared_ptr<DeviceState>& device() const { return device_; }
     [[nodiscard]] const std::string& record() const { return definitions_.records.back().name; }
+    /// What is in use, never Storage::automatic.
+    [[nodiscard]] Storage storage_in_use() const { return in_use_; }
+    [[nodiscard]] std::string storage_reason() const;
+    /// Of Storage::automatic; null otherwise. For tests, which tell it of times of their own.
+    [[nodiscard]] Chooser* chooser() const { return chooser_.get(); }
     /// The mode in which the lists are read, as in view.h.
     [[nodiscard]] unsigned mode() const;
 
@@ -74,15 +93,28 @@ public:
 
     /// Completes when all that was enqueued has.
     [[nodiscard]] cl::Event marker() const;
-    /// Ends a pending build. Throws what it throws.
+    /// Ends a pending build, and empties lists that a failure has left in no order. Throws what the
+    /// build throws, or what fails still.
     void settle() const;
 
     // For Build.
     [[nodiscard]] ListStorage& storage() const { return *storage_; }
+    /// Puts the chosen storage in place, and starts a build in it.
+    void start();
+    /// What the storage's review() says. Where an automatic storage fails and another may not, that
+    /// takes its place, and the lists are not complete.
+    bool review(BuildReport& report);
+    /// Whether review() can change the lists.
+    [[nodiscard]] bool review_may_change() const;
     void set_pending(std::shared_ptr<Build> build) { pending_ = std::move(build); }
     void empty_after_failure(bool without_pool) noexcept;
 
 private:
+    [[nodiscard]] ListSorter& sorter();
+    BuildReport build_once(const std::function<void()>& insert);
+    void measure_walk(Trial& trial) const;
+    void use(Storage storage);
+    bool replace(const BuildReport& report, const char* why, bool for_ever);
     Kernel& kernel(const std::string& name, std::string_view source,
                    const std::string& definitions = {}) const;
     [[nodiscard]] Range cell_range() const;
@@ -104,9 +136,15 @@ private:
     Definitions definitions_;
     Shape shape_;
     ListsOptions options_;
+    std::unique_ptr<Chooser> chooser_;  ///< of Storage::automatic
+    Storage in_use_;
+    bool has_chosen_ = false;  ///< storage_ is what use() made, with its pool
     std::unique_ptr<ListStorage> storage_;
     std::shared_ptr<Build> pending_;  ///< a build that is not finished yet
+    bool in_slices_ = false;          ///< a build in slices is under way: the storage stays
     bool reading_slice_ = false;
+    mutable bool broken_ = false;  ///< lists in no order: a failed build or clear() left them so
+    bool without_pool_ = false;    ///< the memory of the nodes is to be given back then
     mutable std::map<std::string, Kernel> kernels_;  ///< the library's, by name and definitions
     mutable std::unique_ptr<CellScan> scan_;
     std::unique_ptr<ListSorter> sorter_;

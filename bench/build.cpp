@@ -1,0 +1,46 @@
+// Whole builds, from the call to the report: clearing, the runs of the user's kernel, and what the
+// storage does around them. Host time, launches included.
+
+#include "support/containers.hpp"
+
+namespace bench {
+
+namespace {
+
+/// What build() does with nothing but the defaults: 4,096 records into 64 x 64 cells.
+Result small_build(const Suite& suite) {
+    constexpr cl_uint nodes = 4096;
+    const Workload workload{.occupancy = 1, .nodes = nodes};
+    const cellist::Device& device = suite.device();
+    cellist::Lists<Record12> lists(device, {64, 64});
+    cellist::Kernel insert(device, source_of<Record12>(kernels::insert_cl, "insert.cl"), "insert",
+                           lists);
+    const auto build = [&] { lists.build(insert, nodes, workload.distribution.id, nodes); };
+    build();
+    cellist::Kernel read(device, source_of<Record12>(kernels::read_cl, "read.cl"), "read", lists);
+    cellist::Buffer<cl_uint> digests(device, workload.cells());
+    read.run(workload.cells(), lists, digests);
+    check_digests(digests.download(), expected(workload).digests);
+
+    Sampling sampling = suite.sampling();
+    sampling.most *= 10;
+    const Samples samples = sample(sampling, [&] { return host_seconds(device, build); });
+    return {samples, nodes, 0};
+}
+
+}  // namespace
+
+void add_build(Suite& suite) {
+    add_cases(suite, "build", suite.workloads(), storages(),
+              []<class Record>(const Suite& s, const Workload& workload, const Keeping& keeping) {
+                  Containers<Record> containers(s, workload, keeping);
+                  const Samples samples = sample(s.sampling(), [&] {
+                      cellist::Lists<Record>& lists = containers.next();
+                      return host_seconds(s.device(), [&] { containers.build(lists); });
+                  });
+                  return Result{samples, double(workload.nodes), 0};
+              });
+    suite.add("small_build", [&suite] { return small_build(suite); });
+}
+
+}  // namespace bench

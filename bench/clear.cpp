@@ -1,0 +1,27 @@
+// Emptying all lists, in host time. What is processed are cells.
+
+#include "support/containers.hpp"
+
+namespace bench {
+
+void add_clear(Suite& suite) {
+    std::vector<Workload> workloads = suite.workloads();
+    std::erase_if(workloads, [](const Workload& workload) {
+        return workload.distribution.id != BENCH_RANDOM || workload.node_bytes != 16;
+    });
+    add_cases(suite, "clear", workloads, storages(),
+              []<class Record>(const Suite& s, const Workload& workload, const Keeping& keeping) {
+                  Containers<Record> containers(s, workload, keeping);
+                  cellist::Lists<Record>& first = containers.next();
+                  first.clear();
+                  if (first.lengths().total != 0)
+                      throw std::runtime_error("the lists are not empty");
+                  const Samples samples = sample(s.sampling(), [&] {
+                      cellist::Lists<Record>& lists = containers.next();
+                      return host_seconds(s.device(), [&] { lists.clear(); });
+                  });
+                  return Result{samples, double(workload.cells()), 4.0 * workload.cells()};
+              });
+}
+
+}  // namespace bench

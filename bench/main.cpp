@@ -1,0 +1,135 @@
+// The benchmarks, on Google Benchmark. Medians of at least 7 runs, by the device's clock where a case is
+// one kernel, by the host's where it is a call. Results are checked once a case, before it is timed.
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
+#include <iostream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <thread>
+
+#include <benchmark/benchmark.h>
+
+#include "support/suite.hpp"
+
+namespace {
+
+constexpr const char* usage =
+    "usage: cellist_bench [--effort=tiny|quick|full] [--nodes=N] [--occupancy=K] [--threads=T]\n"
+    "                     [options of Google Benchmark; see --help]\n"
+    "  --nodes      records of the workload that ratios are taken of\n"
+    "  --occupancy  records of a cell, on average; the number of cells is rounded down to a power "
+    "of 2\n"
+    "  --threads    of the peers in C++; without it as many as the device has compute units\n"
+    "CELLIST_DEVICE names the device.\n";
+
+struct Options {
+    bench::Effort effort = bench::Effort::quick;
+    cl_uint nodes = 0;
+    cl_uint occupancy = 16;
+    cl_uint threads = 0;
+};
+
+cl_uint number(std::string_view text) {
+    cl_uint value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || value == 0)
+        throw std::invalid_argument("'" + std::string(text) +
+                                    "' is not a number from 1 to 2^32 - 1");
+    return value;
+}
+
+bench::Effort effort(std::string_view text) {
+    if (text == "tiny") return bench::Effort::tiny;
+    if (text == "quick") return bench::Effort::quick;
+    if (text == "full") return bench::Effort::full;
+    throw std::invalid_argument("'" + std::string(text) + "' is not tiny, quick or full");
+}
+
+/// Takes what is no option of Google Benchmark.
+Options parse(int argc, char** argv) {
+    Options options;
+    for (int i = 1; i < argc; ++i) {
+        const std::string_view argument = argv[i];
+        const std::size_t equals = argument.find('=');
+        const std::string_view name = argument.substr(0, equals);
+        const std::string_view value =
+            equals == std::string_view::npos ? "" : argument.substr(equals + 1);
+        if (name == "--effort")
+            options.effort = effort(value);
+        else if (name == "--nodes")
+            options.nodes = number(value);
+        else if (name == "--occupancy")
+            options.occupancy = number(value);
+        else if (name == "--threads")
+            options.threads = number(value);
+        else
+            throw std::invalid_argument("unknown argument '" + std::string(argument) + "'");
+    }
+    return options;
+}
+
+cl_uint default_nodes(const cellist::Device& device, bench::Effort effort) {
+    const bool gpu = (device.info().type & CL_DEVICE_TYPE_GPU) != 0;
+    if (effort == bench::Effort::tiny) return 1u << 10;
+    const cl_uint full = gpu ? 1u << 26 : 1u << 22;
+    return effort == bench::Effort::quick ? full / 4 : full;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+    benchmark::Initialize(&argc, argv);
+    Options options;
+    try {
+        options = parse(argc, argv);
+    } catch (const std::invalid_argument& error) {
+        std::cerr << "cellist_bench: " << error.what() << '\n' << usage;
+        return 2;
+    }
+
+    const cellist::Device device = cellist::Device::choose();
+    const cellist::DeviceInfo& info = device.info();
+    const bool gpu = (info.type & CL_DEVICE_TYPE_GPU) != 0;
+    if (options.nodes == 0) options.nodes = default_nodes(device, options.effort);
+    if (options.threads == 0)
+        options.threads =
+            gpu ? std::max(1u, std::thread::hardware_concurrency()) : info.compute_units;
+    bench::Suite suite(device, options.effort, options.nodes, options.occupancy, options.threads);
+    benchmark::AddCustomContext("device", info.name);
+    benchmark::AddCustomContext("platform", info.platform);
+    benchmark::AddCustomContext("driver", info.driver);
+    benchmark::AddCustomContext("kind", gpu ? "gpu" : "cpu");
+    benchmark::AddCustomContext("compute_units", std::to_string(info.compute_units));
+    benchmark::AddCustomContext("nodes", std::to_string(options.nodes));
+    benchmark::AddCustomContext("occupancy", std::to_string(options.occupancy));
+    benchmark::AddCustomContext("threads", std::to_string(options.threads));
+
+    add_ceilings(suite);
+    add_insert(suite);
+    add_build(suite);
+    add_read(suite);
+    add_sort(suite);
+    add_nearest(suite);
+    add_pack(suite);
+    add_clear(suite);
+    if (!gpu) {
+        add_peer_std_sort(suite);
+        add_peer_counting_sort(suite);
+#ifdef BENCH_TBB
+        add_peer_parallel_sort(suite);
+#endif
+    }
+#ifdef BENCH_BOOST_COMPUTE
+    add_peer_boost_compute(suite);
+#endif
+    const bool ok = suite.run();
+    benchmark::Shutdown();
+    return ok ? 0 : 1;
+} catch (const std::exception& error) {
+    std::cerr << "cellist_bench: " << error.what() << '\n';
+    return 1;
+}

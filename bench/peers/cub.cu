@@ -1,0 +1,417 @@
+// CUB on an NVIDIA GPU, as a program of its own: sorts the same input as cellist_bench does, and prints
+// the times as Google Benchmark would, in JSON on standard output.
+//
+//   sort_path        DeviceRadixSort of the records by their cell, over as many bits as cells have, then
+//                    bounds and one read of every list:
+//     cub_values     the records as values, 12 bytes
+//     cub_values_16  padded to 16 bytes
+//     cub_gather     indices as values, then the records gathered by them
+//     cub_index      indices as values, through which the records are read
+//   segmented_sort   DeviceSegmentedSort of lists of one length by their key:
+//     cub_values     with the rest of the record as value
+//     cub_index      with indices as values
+//
+// Host time from the first launch until the device is done; the input lies in memory, temporary memory
+// is allocated before. Results are checked once a case, before it is timed.
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <cub/device/device_radix_sort.cuh>
+#include <cub/device/device_segmented_sort.cuh>
+
+#include "support/distribution.h"
+
+namespace {
+
+void check(cudaError_t error, const char* what) {
+    if (error == cudaSuccess) return;
+    std::fprintf(stderr, "cellist_bench_cub: %s: %s\n", what, cudaGetErrorString(error));
+    std::exit(1);
+}
+#define CHECK(call) check(call, #call)
+
+/// `size` elements in device memory.
+template <class T>
+class Buffer {
+public:
+    explicit Buffer(std::size_t size) {
+        CHECK(cudaMalloc(&data_, std::max<std::size_t>(size, 1) * sizeof(T)));
+    }
+    ~Buffer() { cudaFree(data_); }
+    Buffer(const Buffer&) = delete;
+    Buffer& operator=(const Buffer&) = delete;
+    T* get() const { return data_; }
+
+private:
+    T* data_ = nullptr;
+};
+
+struct Record {
+    std::uint32_t words[3];
+};
+
+struct Workload {
+    const char* distribution;
+    std::uint32_t id;
+    std::uint32_t occupancy;
+    std::uint32_t nodes;
+
+    std::uint32_t cells() const {
+        std::uint32_t cells = 1;
+        while (cells <= nodes / occupancy / 2) cells *= 2;
+        return cells;
+    }
+    int cell_bits() const {
+        int bits = 0;
+        while ((1u << bits) < cells()) ++bits;
+        return std::max(bits, 1);
+    }
+    std::string name() const {
+        return std::string("distribution:") + distribution +
+               "/node_bytes:16/occupancy:" + std::to_string(occupancy) +
+               "/nodes:" + std::to_string(nodes);
+    }
+};
+
+__device__ Record record_of(std::uint32_t i) {
+    return {{bench_word(i, 0), bench_word(i, 1), bench_word(i, 2)}};
+}
+
+__device__ std::uint32_t digest_of(const Record& record) {
+    std::uint32_t digest = 0;
+    for (std::uint32_t j = 0; j < 3; ++j) digest += bench_digest_word(record.words[j], j);
+    return digest;
+}
+
+__device__ Record record_in(const Record& record) { return record; }
+__device__ Record record_in(const uint4& value) { return {{value.x, value.y, value.z}}; }
+__device__ void put(Record& to, const Record& record) { to = record; }
+__device__ void put(uint4& to, const Record& record) {
+    to = make_uint4(record.words[0], record.words[1], record.words[2], 0);
+}
+
+constexpr unsigned group = 256;
+unsigned groups(std::size_t items) { return static_cast<unsigned>((items + group - 1) / group); }
+__device__ std::uint32_t global_id() { return blockIdx.x * blockDim.x + threadIdx.x; }
+
+template <class T>
+__global__ void store_input(std::uint32_t* cells, T* records, std::uint32_t count,
+                            std::uint32_t cell_count, std::uint32_t distribution) {
+    const std::uint32_t i = global_id();
+    if (i >= count) return;
+    cells[i] = bench_cell(i, cell_count, distribution);
+    put(records[i], record_of(i));
+}
+
+__global__ void store_indices(std::uint32_t* indices, std::uint32_t count) {
+    const std::uint32_t i = global_id();
+    if (i < count) indices[i] = i;
+}
+
+/// What every list must come to, without a sort.
+__global__ void add_digests(std::uint32_t* digests, std::uint32_t count, std::uint32_t cell_count,
+                            std::uint32_t distribution) {
+    const std::uint32_t i = global_id();
+    if (i < count)
+        atomicAdd(&digests[bench_cell(i, cell_count, distribution)], digest_of(record_of(i)));
+}
+
+/// Where each cell's items begin, in cells that are sorted; offsets has cell_count + 1 elements.
+__global__ void find_bounds(const std::uint32_t* cells, std::uint32_t count,
+                            std::uint32_t cell_count, std::uint32_t* offsets) {
+    const std::uint32_t i = global_id();
+    if (i > count) return;
+    const std::uint32_t first = i == 0 ? 0 : cells[i - 1] + 1;
+    const std::uint32_t last = i == count ? cell_count : cells[i];
+    for (std::uint32_t cell = first; cell <= last; ++cell) offsets[cell] = i;
+}
+
+template <class T>
+__global__ void read(const std::uint32_t* offsets, const T* records, std::uint32_t* digests,
+                     std::uint32_t cell_count) {
+    const std::uint32_t cell = global_id();
+    if (cell >= cell_count) return;
+    const std::uint32_t end = offsets[cell + 1];
+    std::uint32_t digest = 0;
+    for (std::uint32_t i = offsets[cell]; i < end; ++i) digest += digest_of(record_in(records[i]));
+    digests[cell] = digest;
+}
+
+__global__ void read_indexed(const std::uint32_t* offsets, const std::uint32_t* indices,
+                             const Record* records, std::uint32_t* digests,
+                             std::uint32_t cell_count) {
+    const std::uint32_t cell = global_id();
+    if (cell >= cell_count) return;
+    const std::uint32_t end = offsets[cell + 1];
+    std::uint32_t digest = 0;
+    for (std::uint32_t i = offsets[cell]; i < end; ++i) digest += digest_of(records[indices[i]]);
+    digests[cell] = digest;
+}
+
+__global__ void gather(const std::uint32_t* indices, const Record* from, Record* to,
+                       std::uint32_t count) {
+    const std::uint32_t i = global_id();
+    if (i < count) to[i] = from[indices[i]];
+}
+
+struct Sampling {
+    std::size_t least = 7, most = 101;
+    double seconds = 0.3;
+};
+
+/// Prints the cases in the form of Google Benchmark.
+class Report {
+public:
+    Report() {
+        cudaDeviceProp device;
+        int driver = 0;
+        CHECK(cudaGetDeviceProperties(&device, 0));
+        CHECK(cudaDriverGetVersion(&driver));
+        std::printf(
+            "{\n  \"context\": {\"device\": \"%s\", \"cuda_driver\": \"%d.%d\", \"cub\": "
+            "\"%d\"},\n",
+            device.name, driver / 1000, driver % 1000 / 10, CUB_VERSION);
+        std::printf("  \"benchmarks\": [");
+    }
+    ~Report() { std::printf("\n  ]\n}\n"); }
+
+    void add(const std::string& name, std::vector<double> seconds, std::uint32_t nodes) {
+        std::sort(seconds.begin(), seconds.end());
+        const std::size_t middle = seconds.size() / 2;
+        const double median =
+            seconds.size() % 2 == 1 ? seconds[middle] : (seconds[middle - 1] + seconds[middle]) / 2;
+        std::printf(
+            "%s\n    {\"name\": \"%s\", \"real_time\": %.6f, \"time_unit\": \"ms\", "
+            "\"items_per_second\": %.6g, \"least_ms\": %.6f, \"greatest_ms\": %.6f, "
+            "\"samples\": %zu}",
+            first_ ? "" : ",", name.c_str(), 1e3 * median, nodes / median, 1e3 * seconds.front(),
+            1e3 * seconds.back(), seconds.size());
+        std::fflush(stdout);
+        first_ = false;
+    }
+
+private:
+    bool first_ = true;
+};
+
+double host_seconds(const std::function<void()>& work) {
+    CHECK(cudaDeviceSynchronize());
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    CHECK(cudaGetLastError());
+    CHECK(cudaDeviceSynchronize());
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+std::vector<double> sample(const Sampling& sampling, const std::function<void()>& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    std::vector<double> seconds;
+    while (seconds.size() < sampling.least ||
+           (seconds.size() < sampling.most &&
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() <
+                sampling.seconds))
+        seconds.push_back(host_seconds(work));
+    return seconds;
+}
+
+/// Exits unless two buffers are equal.
+void compare(const Buffer<std::uint32_t>& found, const Buffer<std::uint32_t>& expected,
+             std::size_t size, const std::string& name) {
+    std::vector<std::uint32_t> a(size), b(size);
+    CHECK(cudaMemcpy(a.data(), found.get(), size * sizeof(a[0]), cudaMemcpyDeviceToHost));
+    CHECK(cudaMemcpy(b.data(), expected.get(), size * sizeof(b[0]), cudaMemcpyDeviceToHost));
+    if (a == b) return;
+    std::fprintf(stderr, "cellist_bench_cub: %s: the lists are wrong\n", name.c_str());
+    std::exit(1);
+}
+
+/// The input of a workload, and what comes of it.
+struct SortPath {
+    explicit SortPath(const Workload& w)
+        : workload(w),
+          input_cells(w.nodes),
+          cells(w.nodes),
+          offsets(w.cells() + 1),
+          digests(w.cells()),
+          expected(w.cells()) {
+        CHECK(cudaMemset(expected.get(), 0, w.cells() * sizeof(std::uint32_t)));
+        add_digests<<<groups(w.nodes), group>>>(expected.get(), w.nodes, w.cells(), w.id);
+    }
+
+    void bounds() {
+        find_bounds<<<groups(workload.nodes + std::size_t{1}), group>>>(
+            cells.get(), workload.nodes, workload.cells(), offsets.get());
+    }
+
+    void measure(Report& report, const Sampling& sampling, const std::string& peer,
+                 const std::function<void()>& work) {
+        const std::string name = "sort_path/peer:" + peer + "/" + workload.name();
+        CHECK(cudaMemset(digests.get(), 0, workload.cells() * sizeof(std::uint32_t)));
+        host_seconds(work);
+        compare(digests, expected, workload.cells(), name);
+        report.add(name, sample(sampling, work), workload.nodes);
+    }
+
+    Workload workload;
+    Buffer<std::uint32_t> input_cells, cells, offsets, digests, expected;
+};
+
+/// The size of CUB's temporary memory: what `sort` asks for when it gets none.
+template <class Sort>
+std::size_t temporary_bytes(const Sort& sort) {
+    std::size_t bytes = 0;
+    CHECK(sort(nullptr, bytes));
+    return bytes;
+}
+
+template <class Value>
+void sort_values(Report& report, const Sampling& sampling, const Workload& w, const char* peer) {
+    SortPath path(w);
+    Buffer<Value> input(w.nodes), values(w.nodes);
+    store_input<<<groups(w.nodes), group>>>(path.input_cells.get(), input.get(), w.nodes, w.cells(),
+                                            w.id);
+    const auto sort = [&](void* memory, std::size_t& bytes) {
+        return cub::DeviceRadixSort::SortPairs(memory, bytes, path.input_cells.get(),
+                                               path.cells.get(), input.get(), values.get(), w.nodes,
+                                               0, w.cell_bits());
+    };
+    std::size_t bytes = temporary_bytes(sort);
+    Buffer<char> memory(bytes);
+    path.measure(report, sampling, peer, [&] {
+        CHECK(sort(memory.get(), bytes));
+        path.bounds();
+        read<<<groups(w.cells()), group>>>(path.offsets.get(), values.get(), path.digests.get(),
+                                           w.cells());
+    });
+}
+
+void sort_indices(Report& report, const Sampling& sampling, const Workload& w) {
+    SortPath path(w);
+    Buffer<Record> records(w.nodes), gathered(w.nodes);
+    Buffer<std::uint32_t> input(w.nodes), indices(w.nodes);
+    store_input<<<groups(w.nodes), group>>>(path.input_cells.get(), records.get(), w.nodes,
+                                            w.cells(), w.id);
+    store_indices<<<groups(w.nodes), group>>>(input.get(), w.nodes);
+    const auto sort = [&](void* memory, std::size_t& bytes) {
+        return cub::DeviceRadixSort::SortPairs(memory, bytes, path.input_cells.get(),
+                                               path.cells.get(), input.get(), indices.get(),
+                                               w.nodes, 0, w.cell_bits());
+    };
+    std::size_t bytes = temporary_bytes(sort);
+    Buffer<char> memory(bytes);
+    path.measure(report, sampling, "cub_gather", [&] {
+        CHECK(sort(memory.get(), bytes));
+        gather<<<groups(w.nodes), group>>>(indices.get(), records.get(), gathered.get(), w.nodes);
+        path.bounds();
+        read<<<groups(w.cells()), group>>>(path.offsets.get(), gathered.get(), path.digests.get(),
+                                           w.cells());
+    });
+    path.measure(report, sampling, "cub_index", [&] {
+        CHECK(sort(memory.get(), bytes));
+        path.bounds();
+        read_indexed<<<groups(w.cells()), group>>>(path.offsets.get(), indices.get(), records.get(),
+                                                   path.digests.get(), w.cells());
+    });
+}
+
+/// Lists behind one another in the order of insertion: list c holds the records c, c + cells, ...
+__global__ void store_lists(std::uint32_t* keys, uint2* rests, std::uint32_t count,
+                            std::uint32_t cell_count, std::uint32_t length) {
+    const std::uint32_t at = global_id();
+    if (at >= count) return;
+    const std::uint32_t i = at / length + at % length * cell_count;
+    keys[at] = bench_word(i, 0);
+    rests[at] = make_uint2(bench_word(i, 1), bench_word(i, 2));
+}
+
+__global__ void store_ends(std::uint32_t* offsets, std::uint32_t cell_count, std::uint32_t length) {
+    const std::uint32_t cell = global_id();
+    if (cell <= cell_count) offsets[cell] = cell * length;
+}
+
+__global__ void count_unsorted(const std::uint32_t* keys, std::uint32_t count, std::uint32_t length,
+                               std::uint32_t* unsorted) {
+    const std::uint32_t at = global_id();
+    if (at < count && at % length != 0 && keys[at] < keys[at - 1]) atomicAdd(unsorted, 1);
+}
+
+template <class Value>
+void sort_segments(Report& report, const Sampling& sampling, const Workload& w, const char* peer,
+                   const std::uint32_t* keys, const Value* values) {
+    const std::uint32_t length = w.nodes / w.cells();
+    const std::string name = std::string("segmented_sort/peer:") + peer + "/" + w.name();
+    Buffer<std::uint32_t> offsets(w.cells() + 1), sorted_keys(w.nodes), unsorted(1), none(1);
+    Buffer<Value> sorted_values(w.nodes);
+    store_ends<<<groups(w.cells() + std::size_t{1}), group>>>(offsets.get(), w.cells(), length);
+    const auto sort = [&](void* memory, std::size_t& bytes) {
+        return cub::DeviceSegmentedSort::SortPairs(memory, bytes, keys, sorted_keys.get(), values,
+                                                   sorted_values.get(), w.nodes, w.cells(),
+                                                   offsets.get(), offsets.get() + 1);
+    };
+    std::size_t bytes = temporary_bytes(sort);
+    Buffer<char> memory(bytes);
+    const auto work = [&] { CHECK(sort(memory.get(), bytes)); };
+    host_seconds(work);
+    CHECK(cudaMemset(unsorted.get(), 0, sizeof(std::uint32_t)));
+    CHECK(cudaMemset(none.get(), 0, sizeof(std::uint32_t)));
+    count_unsorted<<<groups(w.nodes), group>>>(sorted_keys.get(), w.nodes, length, unsorted.get());
+    compare(unsorted, none, 1, name);
+    report.add(name, sample(sampling, work), w.nodes);
+}
+
+void segmented_sort(Report& report, const Sampling& sampling, const Workload& w) {
+    Buffer<std::uint32_t> keys(w.nodes), indices(w.nodes);
+    Buffer<uint2> rests(w.nodes);
+    store_lists<<<groups(w.nodes), group>>>(keys.get(), rests.get(), w.nodes, w.cells(),
+                                            w.nodes / w.cells());
+    store_indices<<<groups(w.nodes), group>>>(indices.get(), w.nodes);
+    sort_segments(report, sampling, w, "cub_values", keys.get(), rests.get());
+    sort_segments(report, sampling, w, "cub_index", keys.get(), indices.get());
+}
+
+std::uint32_t number(const std::string& text) {
+    return static_cast<std::uint32_t>(std::strtoul(text.c_str(), nullptr, 10));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    std::uint32_t nodes = 1u << 26, occupancy = 16;
+    Sampling sampling;
+    for (int i = 1; i < argc; ++i) {
+        const std::string argument = argv[i];
+        const std::string value =
+            argument.substr(std::min(argument.size(), argument.find('=') + 1));
+        if (argument.rfind("--nodes=", 0) == 0 && number(value) > 0)
+            nodes = number(value);
+        else if (argument.rfind("--occupancy=", 0) == 0 && number(value) > 0)
+            occupancy = number(value);
+        else if (argument == "--effort=tiny")
+            sampling = {1, 1, 0};
+        else if (argument != "--effort=quick" && argument != "--effort=full") {
+            std::fprintf(stderr,
+                         "usage: cellist_bench_cub [--nodes=N] [--occupancy=K] "
+                         "[--effort=tiny|quick|full]\n");
+            return 2;
+        }
+    }
+
+    Report report;
+    for (const Workload& w : {Workload{"random", BENCH_RANDOM, occupancy, nodes},
+                              Workload{"coherent", BENCH_COHERENT, occupancy, nodes},
+                              Workload{"runs", BENCH_RUNS, occupancy, nodes}}) {
+        sort_values<Record>(report, sampling, w, "cub_values");
+        sort_values<uint4>(report, sampling, w, "cub_values_16");
+        sort_indices(report, sampling, w);
+    }
+    for (const std::uint32_t length : {8u, 16u, 32u, 64u})
+        segmented_sort(report, sampling, {"coherent", BENCH_COHERENT, length, nodes});
+    return 0;
+}

@@ -1,0 +1,72 @@
+"""Results, tables and plots of the benchmarks; scripts/bench calls it.
+
+  merge --effort E --git HASH --out RESULTS.json OUTPUT.json...   results from the programs' output
+  ratios RESULTS.json                                             the table of ratios
+  plots RESULTS.json DIRECTORY                                    plots, as SVG
+  documents [--check]         tables and plots in the documentation from bench/results; --check changes
+                              nothing, and exits with 1 where they do not agree
+"""
+
+import argparse
+import pathlib
+import sys
+
+import documents
+import figures
+import plots
+import ratios
+import tables
+
+
+def _merge(options):
+    results = figures.merge([figures.load(path) for path in options.outputs], options.effort, options.git)
+    results["ratios"] = ratios.compute(results)
+    figures.save(results, options.out)
+
+
+def _ratios(options):
+    print(tables.ratios_as_text(figures.load(options.results)))
+
+
+def _plots(options):
+    directory = pathlib.Path(options.directory)
+    directory.mkdir(parents=True, exist_ok=True)
+    for name, svg in plots.draw(figures.load(options.results)).items():
+        path = directory / f"{name}.svg"
+        path.write_text(svg, encoding="utf-8")
+        print(path)
+
+
+def _documents(options):
+    if not options.check:
+        documents.write()
+        return
+    outdated = documents.outdated()
+    if outdated:
+        sys.exit(f"not as bench/results says: {', '.join(outdated)}; run scripts/bench --documents")
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="bench/report")
+    commands = parser.add_subparsers(required=True)
+    merge = commands.add_parser("merge")
+    merge.add_argument("--effort", required=True)
+    merge.add_argument("--git", required=True)
+    merge.add_argument("--out", required=True)
+    merge.add_argument("outputs", nargs="+")
+    merge.set_defaults(run=_merge)
+    table = commands.add_parser("ratios")
+    table.add_argument("results")
+    table.set_defaults(run=_ratios)
+    plot = commands.add_parser("plots")
+    plot.add_argument("results")
+    plot.add_argument("directory")
+    plot.set_defaults(run=_plots)
+    generated = commands.add_parser("documents")
+    generated.add_argument("--check", action="store_true")
+    generated.set_defaults(run=_documents)
+    options = parser.parse_args()
+    options.run(options)
+
+
+main()

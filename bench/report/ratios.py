@@ -1,0 +1,151 @@
+"""The ratios that the library is judged by, with their goals, from the figures of one run.
+
+A ratio is {name, case, value, goal, better, ours, theirs}: `better` is "higher" or "lower", `ours` and
+`theirs` say what was compared. A value is None where it was not measured, a goal where there is none
+for this kind of device.
+"""
+
+from figures import fastest, select
+
+LENGTHS = (8, 16, 32, 64)
+
+# name -> (case or None for all, {kind of device: goal}), from the most special case on.
+GOALS = {
+    "insert_vs_ceiling": [("random", {"gpu": 0.95, "cpu": 0.75}), ("coherent", {"gpu": 0.92, "cpu": 0.75})],
+    "insert_vs_ceiling_runs": [(None, {"gpu": 2.0, "cpu": 0.75})],
+    "insert_vs_global_counter": [(None, {"gpu": 6, "cpu": 4})],
+    "insert_hot_vs_global_counter": [(None, {"gpu": 20, "cpu": 2})],
+    "build_read_vs_sort": [
+        ("random", {"gpu": 1.25, "cpu": 10}),
+        ("coherent", {"gpu": 4, "cpu": 10}),
+        ("runs", {"gpu": 3, "cpu": 10}),
+    ],
+    "build_read_vs_cpp": [(case, {"cpu": 1.0}) for case in ("random", "coherent", "runs")],
+    "sort_vs_segmented_sort": [(None, {"gpu": 2, "cpu": 1.5})],
+    "auto_vs_best": [(None, {"gpu": 1.10, "cpu": 1.10})],
+    "small_build_us": [(None, {"gpu": 25, "cpu": 250})],
+}
+LOWER_IS_BETTER = ("auto_vs_best", "small_build_us")
+
+
+def met(ratio):
+    """Whether a ratio reaches its goal; None where one of the two is missing."""
+    if ratio["value"] is None or ratio["goal"] is None:
+        return None
+    if ratio["better"] == "lower":
+        return ratio["value"] <= ratio["goal"]
+    return ratio["value"] >= ratio["goal"]
+
+
+def _goal(name, case, kind):
+    for goal_case, goals in GOALS[name]:
+        if goal_case in (None, case):
+            return goals.get(kind)
+    return None
+
+
+def _described(figure, time_ms=None):
+    what = [str(figure[key]) for key in ("peer", "storage", "allocation", "input") if key in figure]
+    return f"{' '.join(what) or figure['name']} {figure['time_ms'] if time_ms is None else time_ms:.4g} ms"
+
+
+class _Run:
+    def __init__(self, results):
+        self.figures = results["figures"]
+        self.kind = results["kind"]
+        self.base = {"node_bytes": 16, "occupancy": results["occupancy"], "nodes": results["nodes"]}
+        self.ratios = []
+
+    def at_base(self, name, **labels):
+        return select(self.figures, name, **{**self.base, **labels})
+
+    def insert(self, distribution, allocation=None):
+        return fastest(self.at_base("insert", storage="linked", allocation=allocation,
+                                    distribution=distribution))
+
+    def add(self, name, case, value, ours=None, theirs=None, has_goal=True):
+        self.ratios.append({
+            "name": name,
+            "case": case,
+            "value": None if value is None else float(f"{value:.4g}"),
+            "goal": _goal(name, case, self.kind) if has_goal else None,
+            "better": "lower" if name in LOWER_IS_BETTER else "higher",
+            "ours": ours,
+            "theirs": theirs,
+        })
+
+    def compare(self, name, case, ours, theirs, has_goal=True):
+        """Adds their time by ours."""
+        if ours and theirs:
+            self.add(name, case, theirs["time_ms"] / ours["time_ms"], _described(ours),
+                     _described(theirs), has_goal)
+        elif has_goal and _goal(name, case, self.kind) is not None:
+            self.add(name, case, None)
+
+    def of_ceiling(self, name, distribution):
+        insert = self.insert(distribution)
+        if insert:
+            self.add(name, distribution, insert["of_ceiling"], _described(insert),
+                     f"exchange and store {insert['ceiling_ms']:.4g} ms")
+        else:
+            self.add(name, distribution, None)
+
+    def build_read(self, name, peers):
+        """Against the best of the peers: with what a kernel computes, where the peers' input lies in
+        memory already or is computed, whichever is faster; and with all input in memory."""
+        for distribution in ("random", "coherent", "runs"):
+            theirs = [f for f in self.at_base("sort_path", distribution=distribution) if peers(f)]
+            ours = self.at_base("build_read", distribution=distribution, input="generated")
+            self.compare(name, distribution, fastest(ours), fastest(theirs))
+            ours = self.at_base("build_read", distribution=distribution, input="stored")
+            theirs = [f for f in theirs if f.get("input") != "generated"]
+            self.compare(name, f"{distribution}, input in memory", fastest(ours), fastest(theirs),
+                         has_goal=False)
+
+    def automatic(self):
+        """The storage that the library chose against the best one, in the worst case of the grid."""
+        worst = None
+        for chosen in select(self.figures, "build_read", storage="automatic"):
+            labels = {key: chosen[key] for key in ("input", "distribution", "node_bytes", "occupancy", "nodes")}
+            reads = chosen.get("reads", 1)
+
+            def total(figure):
+                return figure["build_ms"] + reads * figure["read_ms"]
+
+            others = [f for f in select(self.figures, "build_read", **labels) if f["storage"] != "automatic"]
+            best = min(others, key=total)
+            ratio = total(chosen) / total(best)
+            if worst is None or ratio > worst[0]:
+                case = f"{chosen['distribution']}, {chosen['nodes']} nodes, {chosen['occupancy']} a cell, {reads} reads"
+                worst = (ratio, case, _described(chosen, total(chosen)), _described(best, total(best)))
+        if worst:
+            self.add("auto_vs_best", "worst: " + worst[1], worst[0], worst[2], worst[3])
+        else:
+            self.add("auto_vs_best", "worst", None)
+
+
+def compute(results):
+    """All ratios, in the order of GOALS."""
+    run = _Run(results)
+    for distribution in ("random", "coherent"):
+        run.of_ceiling("insert_vs_ceiling", distribution)
+    run.of_ceiling("insert_vs_ceiling_runs", "runs")
+    for name, distribution in (("insert_vs_global_counter", "coherent"), ("insert_hot_vs_global_counter", "hot")):
+        run.compare(name, distribution, run.insert(distribution), run.insert(distribution, "global"))
+
+    cub = select(results["figures"], "sort_path", peer="cub_values") != []
+    device_peer = "cub" if cub else "boost_compute"
+    run.build_read("build_read_vs_sort", lambda figure: figure["peer"].startswith(device_peer))
+    if run.kind == "cpu":
+        run.build_read("build_read_vs_cpp", lambda figure: "input" in figure or figure["peer"] in ("std_sort", "parallel_sort"))
+
+    for length in LENGTHS:
+        labels = {"distribution": "coherent", "node_bytes": 16, "occupancy": length, "nodes": results["nodes"]}
+        run.compare("sort_vs_segmented_sort", f"lists of {length}",
+                    fastest(select(run.figures, "sort", **labels)),
+                    fastest(select(run.figures, "segmented_sort", **labels)))
+    run.automatic()
+    small = fastest(select(run.figures, "small_build"))
+    run.add("small_build_us", "4096 nodes, 64 x 64 cells", 1e3 * small["time_ms"] if small else None,
+            _described(small) if small else None)
+    return run.ratios

@@ -1,0 +1,167 @@
+"""Tables of results, for a terminal and for the documentation."""
+
+import re
+
+from figures import fastest, select
+from ratios import GOALS, LENGTHS, met
+
+
+def device_title(results):
+    """How documents name the device of a run."""
+    if results["kind"] == "gpu":
+        return results["device"]
+    processor = re.sub(r"^[a-z0-9_-]+-(?=[A-Z])", "", results["device"])
+    version = re.match(r"[0-9.]*[0-9]", results["driver"])
+    driver = f"PoCL {version.group()}" if version and "Portable" in results["platform"] else results["driver"]
+    return f"{driver}, {results['threads']} cores ({processor})"
+
+
+def power_of_two(value):
+    bits = value.bit_length() - 1
+    return f"2^{bits}" if value == 1 << bits else f"{value:,}"
+
+
+def _value(value):
+    if value is None:
+        return "not measured"
+    return f"{value:.0f}" if value >= 100 else f"{value:.2f}"
+
+
+def _goal(ratio):
+    sign = "<=" if ratio["better"] == "lower" else ">="
+    return "" if ratio["goal"] is None else f"{sign} {ratio['goal']:g}"
+
+
+_MARKS = {True: "met", False: "MISSED", None: ""}
+
+
+def ratios_as_text(results):
+    """The table of ratios; what misses its goal is marked."""
+    rows = [("ratio", "case", "value", "goal", "", "ours", "theirs")]
+    for ratio in results["ratios"]:
+        rows.append((ratio["name"], ratio["case"], _value(ratio["value"]), _goal(ratio), _MARKS[met(ratio)],
+                     ratio["ours"] or "", ratio["theirs"] or ""))
+    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
+    lines = ["  ".join(text.ljust(width) for text, width in zip(row, widths)).rstrip() for row in rows]
+    head = (f"{device_title(results)}, driver {results['driver']}, commit {results['git']}, "
+            f"{power_of_two(results['nodes'])} nodes, {results['occupancy']} a cell")
+    goals = [ratio for ratio in results["ratios"] if ratio["goal"] is not None]
+    missed = sum(met(ratio) is False for ratio in goals)
+    unknown = sum(ratio["value"] is None for ratio in goals)
+    return "\n".join([head, "", *lines, "", f"{len(goals)} goals: {missed} missed, {unknown} not measured"])
+
+
+def ratios_as_markdown(all_results):
+    """The ratios of several runs beside one another, with their goals."""
+    cases = []
+    for results in all_results:
+        for ratio in results["ratios"]:
+            case = (ratio["name"], "" if ratio["case"].startswith("worst") else ratio["case"])
+            if case not in cases:
+                cases.append(case)
+    cases.sort(key=lambda case: list(GOALS).index(case[0]))
+    lines = ["| ratio | case | " + " | ".join(f"{device_title(r)} | goal" for r in all_results) + " |",
+             "|---|---|" + "---|---|" * len(all_results)]
+    for name, case in cases:
+        cells = []
+        for results in all_results:
+            ratio = next((r for r in results["ratios"]
+                          if r["name"] == name and (r["case"] == case or not case)), None)
+            if ratio is None:
+                cells += ["–", "–"]
+                continue
+            value = "–" if ratio["value"] is None else _value(ratio["value"])
+            goal = _goal(ratio).replace(">=", "≥").replace("<=", "≤") or "–"
+            if met(ratio) is False:
+                value = f"**{value} missed**"
+            cells += [value, goal]
+        lines.append(f"| `{name}` | {case} | " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def conditions_as_markdown(all_results):
+    """What was measured on what."""
+    lines = ["| device | driver | nodes, cells | peers | commit |", "|---|---|---|---|---|"]
+    for results in all_results:
+        peers = sorted({f["peer"] for f in results["figures"] if f["name"] == "sort_path"})
+        lines.append(f"| {device_title(results)} | {results['driver']} | {power_of_two(results['nodes'])}, "
+                     f"{power_of_two(results['nodes'] // results['occupancy'])} | {', '.join(peers)} | "
+                     f"{results['git']} |")
+    return "\n".join(lines)
+
+
+def _base(results, name, **labels):
+    return fastest(select(results["figures"], name, node_bytes=16, occupancy=results["occupancy"],
+                          nodes=results["nodes"], **labels))
+
+
+def summary_as_markdown(all_results):
+    """The README's table: inserts, and what whole tasks take against the peers."""
+    rows = []
+
+    def add(title, cell):
+        rows.append(f"| {title} | " + " | ".join(cell(results) for results in all_results) + " |")
+
+    def insert(distribution, allocation=None):
+        def cell(results):
+            figure = _base(results, "insert", storage="linked", allocation=allocation, distribution=distribution)
+            return f"{figure['nodes_per_s'] / 1e6:,.0f} ({figure['of_ceiling']:.2f})" if figure else "–"
+        return cell
+
+    def ratio(name, case):
+        def cell(results):
+            found = [r["value"] for r in results["ratios"] if r["name"] == name and r["case"] == case]
+            return f"{found[0]:.1f} ×" if found and found[0] is not None else "–"
+        return cell
+
+    for distribution, title in (("random", "random cells"), ("coherent", "neighbours hit neighbouring cells"),
+                                ("runs", "16 in a row hit one cell"), ("skewed", "Zipf: a few cells get most"),
+                                ("hot", "all in one cell")):
+        add(f"insert, {title}", insert(distribution))
+    add("insert, random, one global counter instead of shards", insert("random", "global"))
+    for name, against in (("build_read_vs_sort", "radix or merge sort by cell on the same device"),
+                          ("build_read_vs_cpp", "the best C++ on the same cores")):
+        for distribution in ("random", "coherent", "runs"):
+            add(f"build and read, {distribution}, against {against}", ratio(name, distribution))
+    for length in LENGTHS:
+        add(f"sort lists of {length}, against segmented sort or `std::sort`",
+            ratio("sort_vs_segmented_sort", f"lists of {length}"))
+    head = "| | " + " | ".join(device_title(results) for results in all_results) + " |"
+    return "\n".join([head, "|---|" + "---|" * len(all_results), *rows])
+
+
+def times_as_markdown(all_results):
+    """Ceilings and operations on random cells: time, rate, and part of the rate of a copy."""
+    lines = ["| random cells | " + " | ".join(device_title(r) for r in all_results) + " |",
+             "|---|" + "---|" * len(all_results)]
+
+    def add(title, figures):
+        def cell(figure):
+            if not figure:
+                return "–"
+            text = f"{figure['time_ms']:.3g} ms, {figure['nodes_per_s'] / 1e6:,.0f} M/s"
+            return text + (f", {figure['of_copy']:.2f}" if "of_copy" in figure else "")
+        if any(figures):
+            lines.append(f"| {title} | " + " | ".join(map(cell, figures)) + " |")
+
+    for operation in ("copy", "store", "exchange", "exchange_and_store"):
+        add(f"ceiling: {operation.replace('_', ' ')}",
+            [_base(r, "ceiling", operation=operation, distribution="random") for r in all_results])
+    for name in ("insert", "build", "read", "sort", "nearest", "pack", "clear"):
+        for storage in ("linked", "counted", "fixed"):
+            add(f"{name}, {storage}",
+                [_base(r, name, storage=storage, allocation=None, distribution="random") for r in all_results])
+    return "\n".join(lines)
+
+
+def full_runs(all_results):
+    """Those that measured all sizes: plots of the others would show points."""
+    return [results for results in all_results if results["effort"] == "full"]
+
+
+def plots_as_markdown(all_results):
+    """The plots of each full run, as they are named under docs/images."""
+    titles = {"throughput": "throughput against size", "ceiling": "inserts against the ceiling",
+              "crossover": "the fastest storage"}
+    return "\n\n".join(f"![{device_title(results)}: {title}](images/bench-{results['file']}-{plot}.svg)"
+                         for results in full_runs(all_results) for plot, title in titles.items())

@@ -1,0 +1,144 @@
+#pragma once
+
+#include <algorithm>
+#include <deque>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <cellist/cellist.hpp>
+
+#include "bench_kernels.hpp"
+#include "support/oracle.hpp"
+#include "support/records.hpp"
+#include "support/suite.hpp"
+
+namespace bench {
+
+/// The source of a benchmark's kernels for a record, with the distributions before it.
+template <class Record>
+cellist::Source source_of(std::string_view kernels, const std::string& file_name) {
+    return {.text = std::string(kernels::distribution_h) + std::string(kernels::record_clh) +
+                    "#line 1 \"" + file_name + "\"\n" + std::string(kernels),
+            .file_name = file_name,
+            .options = "-DRECORD=Record" + std::to_string(sizeof(Record)) +
+                       " -DBENCH_WORDS=" + std::to_string(words_of<Record>)};
+}
+
+/// Whether the kernel computes what it inserts, or reads it from arrays.
+enum class Input { generated, stored };
+
+/// Containers of one workload, to be used by turns. They are filled and checked once; where a list is too long for one
+/// work-item to go through, fewer records of the same workload are checked in its place.
+template <class Record>
+class Containers {
+public:
+    /// Throws std::runtime_error where the lists are wrong.
+    Containers(const Suite& suite, const Workload& workload, const Keeping& keeping,
+               Input input = Input::generated)
+        : workload_(workload), options_(options_for(workload, keeping)) {
+        const cellist::Device& device = suite.device();
+        lists_.emplace_back(device, cellist::Shape{workload.cells()}, options_);
+        insert_.emplace(device, source_of<Record>(kernels::insert_cl, "insert.cl"),
+                        input == Input::stored ? "insert_stored" : "insert", lists_.front());
+        if (input == Input::stored) store_input(device);
+        const cellist::BuildReport report = build(lists_.front());
+        if (report.stored != workload.nodes)
+            throw std::runtime_error(std::to_string(report.stored) + " records are stored, not " +
+                                     std::to_string(workload.nodes));
+        Workload checked = workload;
+        while (checked.longest() > readable_nodes) checked.nodes /= 2;
+        if (checked.nodes == workload.nodes)
+            check(device);
+        else
+            Containers(suite, checked, keeping, input);
+
+        while (lists_.size() < suite.copies(lists_.front().pool_bytes())) {
+            lists_.emplace_back(device, cellist::Shape{workload.cells()}, options_);
+            build(lists_.back());
+        }
+    }
+
+    [[nodiscard]] std::size_t size() const { return lists_.size(); }
+    [[nodiscard]] cellist::Lists<Record>& next() {
+        turn_ = (turn_ + 1) % lists_.size();
+        return lists_[turn_];
+    }
+
+    /// Fills the lists anew. Blocks.
+    cellist::BuildReport build(cellist::Lists<Record>& lists) {
+        return lists.build([&] { run_insert(lists); });
+    }
+
+    /// Fills the lists anew. Returns what the device took for each run of the inserting kernel.
+    [[nodiscard]] std::vector<double> insert_seconds(cellist::Lists<Record>& lists) {
+        std::vector<cl::Event> events;
+        lists.build([&] { events.push_back(run_insert(lists)); });
+        std::vector<double> seconds;
+        for (const cl::Event& event : events) seconds.push_back(device_seconds(event));
+        return seconds;
+    }
+
+private:
+    static cellist::ListsOptions options_for(const Workload& workload, const Keeping& keeping) {
+        cellist::ListsOptions options = keeping.options;
+        options.capacity_nodes = workload.nodes;
+        if (options.storage == cellist::Storage::fixed) options.slots = expected(workload).longest;
+        return options;
+    }
+
+    cl::Event run_insert(cellist::Lists<Record>& lists) {
+        if (stored_)
+            return insert_->run(workload_.nodes, lists, stored_->first, stored_->second,
+                                workload_.nodes);
+        return insert_->run(workload_.nodes, lists, workload_.distribution.id, workload_.nodes);
+    }
+
+    void store_input(const cellist::Device& device) {
+        stored_.emplace(cellist::Buffer<cl_uint>(device, workload_.nodes),
+                        cellist::Buffer<Record>(device, workload_.nodes));
+        cellist::Kernel store(device, source_of<Record>(kernels::input_cl, "input.cl"),
+                              "store_input", cellist::type<Record>);
+        store.run(workload_.nodes, stored_->first, stored_->second, workload_.cells(),
+                  workload_.distribution.id);
+    }
+
+    void check(const cellist::Device& device) {
+        cellist::Lists<Record>& lists = lists_.front();
+        if (const cellist::Validation found = lists.validate(); !found.ok())
+            throw std::runtime_error(found.message());
+        cellist::Kernel read(device, source_of<Record>(kernels::read_cl, "read.cl"), "read", lists);
+        cellist::Buffer<cl_uint> digests(device, workload_.cells());
+        read.run(workload_.cells(), lists, digests);
+        check_digests(digests.download(), expected(workload_).digests);
+    }
+
+    Workload workload_;
+    cellist::ListsOptions options_;
+    std::deque<cellist::Lists<Record>> lists_;
+    std::optional<cellist::Kernel> insert_;
+    std::optional<std::pair<cellist::Buffer<cl_uint>, cellist::Buffer<Record>>> stored_;
+    std::size_t turn_ = 0;
+};
+
+/// Adds a case for each workload and keeping that fit the device: `measure` is called with the record
+/// as its template argument, as measure.operator()<Record>(suite, workload, keeping).
+template <class Measure>
+void add_cases(Suite& suite, const std::string& name, const std::vector<Workload>& workloads,
+               const std::vector<Keeping>& keepings, const Measure& measure) {
+    for (const Keeping& keeping : keepings) {
+        for (const Workload& workload : workloads) {
+            if (!fits(suite.device().info(), workload, keeping)) continue;
+            suite.add(name + "/" + keeping.name() + "/" + workload.name(), [=, &suite] {
+                return with_record(workload.node_bytes, [&]<class Record>() {
+                    return measure.template operator()<Record>(suite, workload, keeping);
+                });
+            });
+        }
+    }
+}
+
+}  // namespace bench

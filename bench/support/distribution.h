@@ -1,0 +1,79 @@
+// Which cell the i-th insert goes to, and which words it inserts. Compiled as OpenCL C, C++ and
+// CUDA, so that every device and every peer works on the same input.
+//
+// The number of cells is a power of two: a division would take longer than what is measured.
+#ifndef CELLIST_BENCH_DISTRIBUTION_H
+#define CELLIST_BENCH_DISTRIBUTION_H
+
+#ifdef __OPENCL_VERSION__
+typedef uint bench_uint;
+#define BENCH_FUNCTION static inline
+#define BENCH_LEADING_ZEROS(x) clz(x)
+#else
+#include <stdint.h>
+typedef uint32_t bench_uint;
+#if defined(__CUDA_ARCH__)
+#define BENCH_LEADING_ZEROS(x) static_cast<bench_uint>(__clz(static_cast<int>(x)))
+#else
+#define BENCH_LEADING_ZEROS(x) static_cast<bench_uint>(__builtin_clz(x))
+#endif
+#ifdef __CUDACC__
+#define BENCH_FUNCTION static inline __host__ __device__
+#else
+#define BENCH_FUNCTION inline
+#endif
+#endif
+
+#define BENCH_RANDOM 0u    // hashed cells
+#define BENCH_COHERENT 1u  // neighbouring inserts hit neighbouring cells, as a rasteriser's do
+#define BENCH_RUNS 2u      // 16 consecutive inserts share a hashed cell
+#define BENCH_SKEWED 3u    // the k-th most frequent cell has a share of about 1/k (Zipf)
+#define BENCH_HOT 4u       // all in one cell
+
+// A hash of 32 bits, one to one (Chris Wellons, "Prospecting for Hash Functions", 2018).
+BENCH_FUNCTION bench_uint bench_hash(bench_uint x) {
+    x ^= x >> 16;
+    x *= 0x7feb352du;
+    x ^= x >> 15;
+    x *= 0x846ca68bu;
+    return x ^ (x >> 16);
+}
+
+// A rank from 0 to cells - 2: rank k with a probability of about 1 / k. Each power of two of ranks
+// is as likely as any other. The ranks are spread over the cells.
+BENCH_FUNCTION bench_uint bench_skewed_cell(bench_uint i, bench_uint cells) {
+    const bench_uint hash = bench_hash(i);
+    const bench_uint octaves = 31u - BENCH_LEADING_ZEROS(cells);
+    const bench_uint octave = ((hash >> 16) * octaves) >> 16;
+    const bench_uint first = (1u << octave) - 1u;
+    const bench_uint rank = first + (bench_hash(hash) & first);
+    return (rank * 0x9e3779b1u) & (cells - 1u);
+}
+
+BENCH_FUNCTION bench_uint bench_cell(bench_uint i, bench_uint cells, bench_uint distribution) {
+    switch (distribution) {
+        case BENCH_RANDOM:
+            return bench_hash(i) & (cells - 1u);
+        case BENCH_COHERENT:
+            return i & (cells - 1u);
+        case BENCH_RUNS:
+            return bench_hash(i / 16u) & (cells - 1u);
+        case BENCH_SKEWED:
+            return bench_skewed_cell(i, cells);
+        default:
+            return 0u;
+    }
+}
+
+// The j-th word of the i-th record. Word 0 is the key that lists are sorted by: no two are equal. Where
+// cells are random it costs nothing, being the hash that they are taken from.
+BENCH_FUNCTION bench_uint bench_word(bench_uint i, bench_uint j) {
+    return j == 0u ? bench_hash(i) : i * (2u * j + 1u);
+}
+
+// What the j-th word of a record adds to the digest of its list.
+BENCH_FUNCTION bench_uint bench_digest_word(bench_uint word, bench_uint j) {
+    return word * (2u * j + 1u);
+}
+
+#endif

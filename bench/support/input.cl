@@ -1,0 +1,9 @@
+// Writes what a workload inserts to arrays, one work-item a record: `cells` and `records` hold one
+// element for each work-item.
+
+kernel void store_input(global uint* cells, global RECORD* records, uint cell_count,
+                        uint distribution) {
+    const uint i = get_global_id(0);
+    cells[i] = bench_cell(i, cell_count, distribution);
+    records[i] = bench_record(i);
+}

@@ -1,0 +1,87 @@
+#include "support/suite.hpp"
+
+#include <algorithm>
+
+#include <benchmark/benchmark.h>
+
+namespace bench {
+
+Suite::Suite(const cellist::Device& device, Effort effort, cl_uint nodes, cl_uint occupancy,
+             unsigned threads)
+    : device_(device), effort_(effort), nodes_(nodes), occupancy_(occupancy), threads_(threads) {
+    if (effort == Effort::tiny) sampling_ = {.least = 1, .most = 1, .seconds = 0};
+    // A GPU takes as many samples in less time.
+    const bool gpu = (device.info().type & CL_DEVICE_TYPE_GPU) != 0;
+    if (effort == Effort::quick || gpu) sampling_.seconds = 0.15;
+}
+
+std::uint64_t Suite::copies(std::uint64_t bytes) const {
+    constexpr std::uint64_t cache_bytes = 128 << 20;
+    if (effort_ == Effort::tiny) return 1;
+    return std::clamp<std::uint64_t>(cache_bytes / std::max<std::uint64_t>(bytes, 1), 1, 256);
+}
+
+Workload Suite::base(const Distribution& distribution) const {
+    return {.distribution = distribution, .occupancy = occupancy_, .nodes = nodes_};
+}
+
+std::vector<Workload> Suite::workloads() const {
+    std::vector<Workload> all;
+    for (const Distribution& distribution : distributions) {
+        const Workload base = this->base(distribution);
+        const auto add = [&](cl_uint Workload::*member, cl_uint value) {
+            all.push_back(base);
+            all.back().*member = value;
+        };
+        all.push_back(base);
+        if (effort_ != Effort::full) continue;
+        for (cl_uint bits = 12; bits <= 26; bits += 2) add(&Workload::nodes, 1u << bits);
+        if (distribution.id != BENCH_RANDOM && distribution.id != BENCH_COHERENT) continue;
+        for (const cl_uint bytes : {8u, 32u}) add(&Workload::node_bytes, bytes);
+        for (const cl_uint occupancy : {1u, 4u, 64u}) add(&Workload::occupancy, occupancy);
+    }
+    return all;
+}
+
+std::vector<Workload> Suite::workloads(double longest) const {
+    std::vector<Workload> all = workloads();
+    std::erase_if(all, [&](const Workload& workload) {
+        return workload.longest() > longest || workload.nodes / 4 > nodes_;
+    });
+    return all;
+}
+
+void Suite::add(const std::string& name, std::function<Result()> measure) {
+    const auto [at, is_new] = cases_.emplace(name, std::move(measure));
+    if (!is_new) return;
+    const auto run = [this, &measured = at->second](benchmark::State& state) {
+        try {
+            Result result;
+            // One iteration for Google Benchmark; its time is the median of all samples.
+            for (auto _ : state) {
+                result = measured();
+                state.SetIterationTime(result.samples.median);
+            }
+            state.counters["least_ms"] = 1e3 * result.samples.least;
+            state.counters["greatest_ms"] = 1e3 * result.samples.greatest;
+            state.counters["samples"] = static_cast<double>(result.samples.count);
+            for (const auto& [counter, value] : result.counters) state.counters[counter] = value;
+            if (result.nodes > 0) state.SetItemsProcessed(static_cast<std::int64_t>(result.nodes));
+            if (result.bytes > 0) state.SetBytesProcessed(static_cast<std::int64_t>(result.bytes));
+        } catch (const std::exception& error) {
+            ++failures_;
+            state.SkipWithError(error.what());
+        }
+    };
+    benchmark::RegisterBenchmark(name.c_str(), run)
+        ->UseManualTime()
+        ->Unit(benchmark::kMillisecond)
+        ->Iterations(1);
+}
+
+bool Suite::run() {
+    const std::size_t count = benchmark::RunSpecifiedBenchmarks();
+    return count > 0 && failures_ == 0;
+}
+
+}  // namespace bench

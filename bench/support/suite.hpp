@@ -1,0 +1,87 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <cellist/cellist.hpp>
+
+#include "support/timing.hpp"
+#include "support/workload.hpp"
+
+namespace bench {
+
+/// How much is measured.
+enum class Effort {
+    tiny,   ///< every kind of case once, as a test of the benchmarks
+    quick,  ///< what the ratios need, at a quarter of the size
+    full,   ///< all workloads
+};
+
+/// What a case came to. Its time is the median.
+struct Result {
+    Samples samples;
+    double nodes = 0;  ///< that were processed
+    double bytes = 0;  ///< that at least have to be moved
+    std::map<std::string, double> counters = {};
+};
+
+/// The device, what to measure on it, and the cases that were added. Each file of benchmarks adds its
+/// own; Google Benchmark runs and reports them.
+class Suite {
+public:
+    Suite(const cellist::Device& device, Effort effort, cl_uint nodes, cl_uint occupancy,
+          unsigned threads);
+
+    [[nodiscard]] const cellist::Device& device() const { return device_; }
+    [[nodiscard]] Effort effort() const { return effort_; }
+    /// Of the C++ peers.
+    [[nodiscard]] unsigned threads() const { return threads_; }
+    [[nodiscard]] const Sampling& sampling() const { return sampling_; }
+
+    /// How many copies of something to use by turns, so that caches do not hold all of them: together
+    /// they take 128 MiB, unless these are over 256 copies.
+    [[nodiscard]] std::uint64_t copies(std::uint64_t bytes) const;
+
+    /// The workload that the ratios are taken of.
+    [[nodiscard]] Workload base(const Distribution& distribution) const;
+    /// The base with each distribution; under full effort also with each size from 2^12 to 2^26, and,
+    /// of random and coherent cells, with each size of a node and several occupancies.
+    [[nodiscard]] std::vector<Workload> workloads() const;
+    /// Those in which no list is longer than this, up to four times the base: for what walks lists, which
+    /// takes long at the largest sizes on a processor.
+    [[nodiscard]] std::vector<Workload> workloads(double longest) const;
+
+    /// Adds a case. `measure` sets up, checks the results once, and measures; what it throws makes the
+    /// case fail. Cases that were added before under the same name are left out.
+    void add(const std::string& name, std::function<Result()> measure);
+
+    /// Runs the cases that Google Benchmark's options select. True if all went well.
+    [[nodiscard]] bool run();
+
+private:
+    const cellist::Device& device_;
+    Effort effort_;
+    cl_uint nodes_;
+    cl_uint occupancy_;
+    unsigned threads_;
+    Sampling sampling_;
+    std::map<std::string, std::function<Result()>> cases_;
+    std::size_t failures_ = 0;
+};
+
+void add_insert(Suite& suite);
+void add_build(Suite& suite);
+void add_read(Suite& suite);
+void add_sort(Suite& suite);
+void add_nearest(Suite& suite);
+void add_pack(Suite& suite);
+void add_clear(Suite& suite);
+void add_ceilings(Suite& suite);
+void add_peer_std_sort(Suite& suite);
+void add_peer_counting_sort(Suite& suite);
+void add_peer_parallel_sort(Suite& suite);
+void add_peer_boost_compute(Suite& suite);
+
+}  // namespace bench

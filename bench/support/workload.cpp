@@ -1,0 +1,84 @@
+#include "support/workload.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace bench {
+
+cl_uint Workload::cells() const { return std::bit_floor(std::max(nodes / occupancy, 1u)); }
+
+double Workload::longest() const {
+    const double mean = static_cast<double>(nodes) / cells();
+    // Five standard deviations over the mean of a Poisson distribution, and a bit for small means.
+    const auto tail = [](double expected) { return expected + 5 * std::sqrt(expected) + 5; };
+    switch (distribution.id) {
+        case BENCH_COHERENT:
+            return std::ceil(mean);
+        case BENCH_RUNS:
+            return 16 * tail(mean / 16);
+        case BENCH_SKEWED:
+            return cells() < 4 ? nodes : nodes / std::log2(cells());
+        case BENCH_HOT:
+            return nodes;
+        default:
+            return tail(mean);
+    }
+}
+
+std::string Workload::name() const {
+    return std::string("distribution:") + distribution.name +
+           "/node_bytes:" + std::to_string(node_bytes) + "/occupancy:" + std::to_string(occupancy) +
+           "/nodes:" + std::to_string(nodes);
+}
+
+std::vector<Workload> random_and_coherent(std::vector<Workload> workloads) {
+    std::erase_if(workloads, [](const Workload& workload) {
+        const cl_uint id = workload.distribution.id;
+        return id != BENCH_RANDOM && id != BENCH_COHERENT;
+    });
+    return workloads;
+}
+
+std::string Keeping::name() const {
+    return "storage:" + storage + (allocation.empty() ? "" : "/allocation:" + allocation) +
+           (reads == 0 ? "" : "/reads:" + std::to_string(reads));
+}
+
+const std::vector<Keeping>& storages() {
+    static const std::vector<Keeping> all{
+        {"linked", "", {.storage = cellist::Storage::linked}},
+        {"counted", "", {.storage = cellist::Storage::counted}},
+        {"fixed", "", {.storage = cellist::Storage::fixed}},
+    };
+    return all;
+}
+
+const std::vector<Keeping>& automatic_storages() {
+    static const std::vector<Keeping> all{};
+    return all;
+}
+
+const std::vector<Keeping>& allocations() {
+    static const std::vector<Keeping> all{
+        {"linked", "sharded", {.allocation = cellist::Allocation::sharded}},
+        {"linked", "global", {.allocation = cellist::Allocation::global}},
+    };
+    return all;
+}
+
+bool fits(const cellist::DeviceInfo& device, const Workload& workload, const Keeping& keeping) {
+    const double cells = workload.cells();
+    const double nodes = workload.nodes;
+    const double record_bytes = 4.0 * workload.words();
+    double pool_bytes = workload.node_bytes * nodes;
+    if (keeping.options.storage == cellist::Storage::counted) pool_bytes = record_bytes * nodes;
+    if (keeping.options.storage == cellist::Storage::fixed)
+        pool_bytes = record_bytes * cells * workload.longest();
+    // Beside the pool: heads, what the ceiling or a packed copy takes, and room to breathe.
+    const double all_bytes = 3 * pool_bytes + 16 * cells;
+    return pool_bytes <= static_cast<double>(device.max_allocation_bytes) &&
+           all_bytes <= 0.5 * static_cast<double>(device.global_memory_bytes);
+}
+
+}  // namespace bench

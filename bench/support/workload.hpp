@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <cellist/cellist.hpp>
+
+#include "support/distribution.h"
+
+namespace bench {
+
+struct Distribution {
+    const char* name;
+    cl_uint id;
+};
+inline constexpr std::array distributions{
+    Distribution{"random", BENCH_RANDOM}, Distribution{"coherent", BENCH_COHERENT},
+    Distribution{"runs", BENCH_RUNS},     Distribution{"skewed", BENCH_SKEWED},
+    Distribution{"hot", BENCH_HOT},
+};
+inline constexpr Distribution random = distributions[0];
+inline constexpr Distribution coherent = distributions[1];
+inline constexpr Distribution runs = distributions[2];
+inline constexpr Distribution skewed = distributions[3];
+inline constexpr Distribution hot = distributions[4];
+
+/// Longest list that one work-item goes through in a benchmark.
+inline constexpr double readable_nodes = 1 << 15;
+
+/// What is inserted where: `nodes` records into nodes / occupancy cells, which is a power of two.
+struct Workload {
+    Distribution distribution = random;
+    cl_uint node_bytes = 16;  ///< record and link
+    cl_uint occupancy = 16;   ///< nodes of a cell, on average
+    cl_uint nodes = 0;
+
+    [[nodiscard]] cl_uint cells() const;
+    [[nodiscard]] cl_uint words() const { return node_bytes / 4 - 1; }  ///< of a record
+    /// About how long the longest list is; an upper bound in all but rare cases.
+    [[nodiscard]] double longest() const;
+    /// As benchmarks are named: "distribution:random/node_bytes:16/...".
+    [[nodiscard]] std::string name() const;
+};
+
+/// Those whose cells are random or coherent: the extremes of what memory makes of a workload.
+[[nodiscard]] std::vector<Workload> random_and_coherent(std::vector<Workload> workloads);
+
+/// How lists are kept.
+struct Keeping {
+    std::string storage;     ///< as benchmarks are named
+    std::string allocation;  ///< the same; empty for what the options take by default
+    cellist::ListsOptions options;
+    cl_uint reads = 0;  ///< that the options tell the library to expect; 0 where they do not
+
+    [[nodiscard]] std::string name() const;
+};
+
+/// The storages, each with its default options.
+[[nodiscard]] const std::vector<Keeping>& storages();
+/// The storage that the library chooses itself, once for each number of reads that it is told to expect;
+/// none where it has no such choice.
+[[nodiscard]] const std::vector<Keeping>& automatic_storages();
+/// Linked lists with each allocation, by its name.
+[[nodiscard]] const std::vector<Keeping>& allocations();
+
+/// Whether a device of this size has room for `copies` containers of a workload at once.
+[[nodiscard]] bool fits(const cellist::DeviceInfo& device, const Workload& workload,
+                        const Keeping& keeping);
+
+}  // namespace bench

@@ -1,0 +1,52 @@
+#include <cellist/cellist.hpp>
+
+#include "check.hpp"
+
+struct Sample {
+    cl_float key;
+    cl_uint id;
+};
+CELLIST_STRUCT(Sample, key, id);
+
+constexpr auto source = R"(
+#include <cellist/lists.clh>
+
+kernel void sample(CELLIST_LISTS(Sample, samples), global const float* keys)
+{
+    uint i = get_global_id(0);
+    Sample s = { keys[i], i };
+    cellist_insert(samples, i % 100, s);
+}
+)";
+
+int main() {
+    cellist::Device device = cellist::Device::choose();
+    const std::vector<cl_float> host(50'000, 1.0f);
+    cellist::Buffer<cl_float> keys(device, host.size());
+
+    cellist::Lists<Sample> samples(device, {100},
+                                   {.overflow = cellist::Overflow::drop, .capacity_nodes = 40'000});
+    cellist::Kernel sample(device, source, "sample", samples);
+
+    keys.upload_async(host);  // host must stay as it is until the upload is done
+    cellist::Pending<cellist::BuildReport> built = samples.build_async(sample, 50'000, keys);
+    samples.sort(&Sample::key);
+    cellist::Pending<cellist::Lengths> lengths = samples.lengths_async();
+    // ... work of the host ...
+    std::cout << built.get().dropped << " dropped, longest list " << lengths.get().longest << '\n';
+
+    // Your own queue, of the same context, beside the library's.
+    const auto cl_device = device.queue().getInfo<CL_QUEUE_DEVICE>();
+    const cl::CommandQueue own_queue(device.context(), cl_device);
+    cl::Event copied;
+    own_queue.enqueueWriteBuffer(keys.cl(), CL_FALSE, 0, host.size() * sizeof(cl_float),
+                                 host.data(), nullptr, &copied);
+    own_queue.flush();
+
+    device.enqueue_wait({copied});  // what the library enqueues next starts after this
+    samples.build(sample, 50'000, keys);
+    cl::Event done = device.enqueue_marker();  // completes after all that is enqueued
+    done.wait();
+    check(samples.lengths().total == 40'000, "the pool is full");
+    std::cout << "asynchronous: ok\n";
+}

@@ -1,0 +1,165 @@
+// What a container does in Storage::automatic. The choice itself is made in chooser.cpp.
+
+#include <array>
+#include <chrono>
+#include <exception>
+#include <optional>
+
+#include <cellist/detail/lists_core.hpp>
+
+#include "build.hpp"
+#include "cellist_kernels.hpp"
+#include "chooser.hpp"
+#include "storages.hpp"
+
+namespace cellist::detail {
+
+namespace {
+
+/// Seconds until all that `work` enqueues has run on the device.
+template <class Work>
+double seconds(const DeviceState& device, const Work& work) {
+    const auto finish = [&] { opencl([&] { device.queue.finish(); }); };
+    finish();
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    finish();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+}  // namespace
+
+/// Makes an automatic storage, or another where this one cannot be made, in the place of the one in
+/// use. The old pool goes first, so that the device never holds both.
+void ListsCore::use(Storage storage) {
+    if (has_chosen_ && storage == in_use_) return;
+    has_chosen_ = false;
+    if (storage_) storage_->release_pool();
+    std::exception_ptr error;
+    for (std::optional<Storage> next = storage; next;) {
+        try {
+            storage_ = make_storage(device_, definitions_, shape_, chooser_->options(*next));
+            in_use_ = *next;
+            has_chosen_ = true;
+            definitions_.modes = storage_->mode();
+            return;
+        } catch (const Error& reason) {
+            // Linked lists have the widest limits: what stops them is what counts.
+            if (!error || *next == Storage::linked) error = std::current_exception();
+            next = chooser_->exclude(*next, std::string("not possible: ") + reason.what());
+        }
+    }
+    if (storage_) empty_after_failure(false);
+    std::rethrow_exception(error);
+}
+
+void ListsCore::start() {
+    if (chooser_ && !in_slices_) use(chooser_->storage());
+    storage_->start();
+}
+
+/// Excludes the storage in use from the choice, and starts the build anew in another. False if there is
+/// none.
+bool ListsCore::replace(const BuildReport& report, const char* why, bool for_ever) {
+    const std::optional<Storage> other = chooser_->exclude(in_use_, why, for_ever);
+    if (!other) return false;
+    chooser_->expect(report.stored + report.dropped);
+    use(*other);
+    storage_->start();
+    return true;
+}
+
+bool ListsCore::review(BuildReport& report) {
+    if (!chooser_ || in_slices_) return storage_->review(report);
+    try {
+        const bool complete = storage_->review(report);
+        if (!complete || in_use_ != Storage::fixed || report.dropped == 0) return complete;
+        // The others drop less, or nothing.
+        return !replace(report, "left: a list was longer than slots", false);
+    } catch (const UnrepeatableError&) {
+        if (!replace(report, "left: the kernel does not repeat itself", true)) throw;
+    } catch (const OverflowError&) {
+        if (in_use_ != Storage::fixed && options_.overflow == Overflow::stop) throw;
+        const std::exception_ptr error = std::current_exception();
+        bool replaced = false;
+        try {
+            replaced = replace(report, "left: the lists did not fit any more", false);
+        } catch (const Error&) {
+            // The others have no room either.
+        }
+        if (!replaced) std::rethrow_exception(error);
+    }
+    return false;
+}
+
+bool ListsCore::review_may_change() const { return chooser_ || storage_->may_grow(); }
+
+BuildReport ListsCore::measure(const std::function<void()>& insert, Trial& trial) {
+    settle();
+    BuildReport report;
+    trial.cost.build_seconds =
+        seconds(*device_, [&] { report = finish(*start_build({this}, insert)).front(); });
+    trial.stored = report.stored;
+
+    try {
+        measure_walk(trial);
+    } catch (...) {
+        empty_after_failure(false);
+        throw;
+    }
+    return report;
+}
+
+void ListsCore::measure_walk(Trial& trial) const {
+    std::array<cl_uint, 2> found{};
+    Memory findings(device_, found.size(), sizeof(cl_uint), "findings");
+    findings.write(found.data(), sizeof found);
+    Arguments arguments;
+    add_to(arguments);
+    arguments.add(cl_uint{walk_most});
+    arguments.add(findings.cl());
+    const bool words = definitions_.records.back().alignment % sizeof(cl_uint) == 0;
+    Kernel& walk = kernel("cellist_walk", kernels::walk_cl,
+                          std::string("#define CELLIST_WORD ") + (words ? "uint\n" : "uchar\n"));
+    trial.cost.read_seconds = seconds(*device_, [&] { walk.enqueue(cell_range(), arguments); });
+    findings.read(found.data(), sizeof found);
+    trial.longest = found[0];
+}
+
+/// A build, and what Storage::automatic learns from it.
+BuildReport ListsCore::build_once(const std::function<void()>& insert) {
+    settle();
+    if (!chooser_ || !chooser_->on_trial()) {
+        const BuildReport report = finish(*start_build({this}, insert)).front();
+        if (chooser_) chooser_->built(report.stored);
+        return report;
+    }
+    Trial trial;
+    const Storage tried = chooser_->storage();
+    const BuildReport report = measure(insert, trial);
+    if (in_use_ == tried)
+        chooser_->measured(trial);
+    else
+        chooser_->built(report.stored);
+    return report;
+}
+
+BuildReport ListsCore::build(const std::function<void()>& insert) {
+    for (;;) {
+        try {
+            return build_once(insert);
+        } catch (const OpenClError& error) {
+            // Drivers may find out in the midst of a build that they have no memory for it.
+            if (!chooser_ || !out_of_memory(error) ||
+                !chooser_->exclude(in_use_,
+                                   std::string("left: ") + error.call() + " found no memory"))
+                throw;
+        }
+    }
+}
+
+std::string ListsCore::storage_reason() const {
+    return chooser_ ? chooser_->reason() : std::string(name_of(in_use_)) + ": named in the options";
+}
+
+}  // namespace cellist::detail

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+namespace cellist::detail {
+
+/// Longest expression, in characters. Compilers follow nested operators by recursion: PoCL 3.1 overflows
+/// 8 MiB of stack at 3000 of them.
+constexpr std::size_t expression_length_max = 1024;
+
+/// Throws Error unless the text, put between brackets, is one expression or no valid source at all: so
+/// that it cannot end the function around it, open a comment, define a macro, loop or call itself.
+/// Names, types and values are left to the device's compiler.
+void check_expression(std::string_view text);
+
+}  // namespace cellist::detail

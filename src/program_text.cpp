@@ -1,0 +1,124 @@
+#include "program_text.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <iterator>
+
+namespace cellist::detail {
+
+namespace {
+
+constexpr std::string_view blanks = " \t";
+constexpr std::string_view digits = "0123456789";
+constexpr std::string_view name_characters =
+    "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ_abcdefghijklmnopqrstuvwxyz";
+
+/// The longest part from `at` on that consists of `characters`.
+std::string_view run(std::string_view text, std::size_t at, std::string_view characters) {
+    return text.substr(at, text.find_first_not_of(characters, at) - at);
+}
+
+/// Takes `expected` from the begin of the text; false if it does not stand there.
+bool take(std::string_view& text, std::string_view expected) {
+    if (!text.starts_with(expected)) return false;
+    text.remove_prefix(expected.size());
+    return true;
+}
+
+void skip_blanks(std::string_view& text) { text.remove_prefix(run(text, 0, blanks).size()); }
+
+/// NAME if the text starts with `#include <cellist/NAME.clh>`, which is taken from it; else empty.
+std::string_view take_library_include(std::string_view& text) {
+    std::string_view rest = text;
+    skip_blanks(rest);
+    if (!take(rest, "#")) return {};
+    skip_blanks(rest);
+    if (!take(rest, "include")) return {};
+    skip_blanks(rest);
+    if (!take(rest, "<") && !take(rest, "\"")) return {};
+    if (!take(rest, "cellist/")) return {};
+    const std::string_view name = run(rest, 0, name_characters);
+    rest.remove_prefix(name.size());
+    if (!take(rest, ".clh") || (!take(rest, ">") && !take(rest, "\""))) return {};
+    text = rest;
+    return name;
+}
+
+}  // namespace
+
+void ProgramText::add(std::string_view part, const std::string& file_name) {
+    parts_.push_back({lines_ + 1, file_name});
+    std::string escaped;
+    for (const char c : file_name) {
+        if (c == '"' || c == '\\') escaped += '\\';
+        escaped += static_cast<unsigned char>(c) < ' ' ? '_' : c;
+    }
+    append("#line 1 \"" + escaped + "\"\n");
+    append(part);
+    append("\n");
+}
+
+std::string ProgramText::in_parts(std::string_view log) const {
+    constexpr std::string_view place = "<kernel>:";
+    std::string out;
+    std::size_t rest = 0;
+    for (std::size_t at = log.find(place); at != std::string_view::npos; at = log.find(place, at)) {
+        const std::size_t begin = at;
+        at += place.size();
+        const std::string_view number = run(log, at, digits);
+        std::size_t line = 0;
+        const auto parsed = std::from_chars(number.data(), number.data() + number.size(), line);
+        const auto behind = std::find_if(parts_.begin(), parts_.end(),
+                                         [&](const Part& part) { return part.line > line; });
+        if (parsed.ec != std::errc() || behind == parts_.begin()) continue;
+        const Part& part = *std::prev(behind);
+        out += log.substr(rest, begin - rest);
+        out += part.file_name + ":" + std::to_string(line - part.line);
+        rest = at += number.size();
+    }
+    return out.append(log.substr(rest));
+}
+
+void ProgramText::append(std::string_view part) {
+    text_ += part;
+    lines_ += static_cast<std::size_t>(std::count(part.begin(), part.end(), '\n'));
+}
+
+std::string without_library_includes(std::string_view text, bool& uses_glm) {
+    std::string out;
+    while (!text.empty()) {
+        std::string_view line = text;
+        const std::string_view name = take_library_include(line);
+        if (name == "lists" || name == "glm") {
+            uses_glm = uses_glm || name == "glm";
+            text = line;
+        }
+        const std::size_t end = text.find_first_of("\r\n");
+        const std::size_t length = end == std::string_view::npos ? text.size() : end + 1;
+        out += text.substr(0, length);
+        text.remove_prefix(length);
+    }
+    return out;
+}
+
+std::string name_behind(std::string_view prefix, std::string_view text) {
+    for (std::size_t at = text.find(prefix); at != std::string_view::npos;
+         at = text.find(prefix, at)) {
+        at += prefix.size();
+        const std::string_view name = run(text, at, name_characters);
+        if (!name.empty()) return std::string(name);
+    }
+    return {};
+}
+
+std::string with_hints(std::string log) {
+    const std::string record = name_behind("cellist_node_", log);
+    const std::string key = name_behind("cellist_key_", log);
+    if (!record.empty())
+        log += "\nhint: name a Lists<" + record + "> or cellist::type<" + record +
+               "> in the constructor of the Kernel, so that it knows the struct";
+    if (!key.empty()) log += "\nhint: '" + key + "' is no scalar member of an adapted struct";
+    return log;
+}
+
+}  // namespace cellist::detail

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cellist::detail {
+
+// Sources and compilers' logs have any length, so they are scanned in one pass, without recursion.
+
+/// A program's text, put together from parts, and which lines come from which.
+class ProgramText {
+public:
+    void add(std::string_view part, const std::string& file_name);
+
+    [[nodiscard]] const std::string& text() const { return text_; }
+
+    /// A compiler's log with the names and lines of the parts. NVIDIA's compiler does not follow
+    /// #line, and counts the lines of the whole text of "<kernel>".
+    [[nodiscard]] std::string in_parts(std::string_view log) const;
+
+private:
+    struct Part {
+        std::size_t line;  ///< of its #line, in the whole text
+        std::string file_name;
+    };
+
+    void append(std::string_view part);
+
+    std::string text_;
+    std::size_t lines_ = 0;
+    std::vector<Part> parts_;
+};
+
+/// Takes the library's own #include lines out of a source, since its text stands before it already,
+/// and keeps the line numbers. Sets `uses_glm` if <cellist/glm.clh> was among them.
+[[nodiscard]] std::string without_library_includes(std::string_view text, bool& uses_glm);
+
+/// The letters, digits and underscores behind the first `prefix` that has any; empty if none has.
+[[nodiscard]] std::string name_behind(std::string_view prefix, std::string_view text);
+
+/// A log that mentions names which users never wrote, with what is behind them.
+[[nodiscard]] std::string with_hints(std::string log);
+
+}  // namespace cellist::detail

@@ -1,0 +1,143 @@
+#include <algorithm>
+
+#include "cellist_kernels.hpp"
+#include "storages.hpp"
+
+namespace cellist::detail {
+
+namespace {
+
+/// Which member of a record is called so. Throws Error if none is, or if it is no scalar.
+cl_uint member_index(const RecordType& record, const std::string& name) {
+    const auto member =
+        std::find_if(record.members.begin(), record.members.end(),
+                     [&](const RecordMember& candidate) { return candidate.name == name; });
+    if (member == record.members.end() || !member->is_scalar)
+        throw Error("Overflow::keep_nearest needs the name of a scalar member of " + record.name +
+                    " in nearest_by, not '" + name + "'");
+    return static_cast<cl_uint>(member - record.members.begin());
+}
+
+}  // namespace
+
+NearestStorage::NearestStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
+                               const Shape& shape, const ListsOptions& options)
+    : ListStorage(std::move(device), definitions, shape, options, CELLIST_FIXED,
+                  definitions.records.back().size,
+                  // One row of thresholds: more come with the ties.
+                  (std::uint64_t{CELLIST_ROW_LEAST} + *options.slots + 1) * shape.cells()),
+      scan_(device_, shape.cells(), 0),
+      choice_memory_(device_, 1, sizeof choice_, "choice") {
+    rank_member_ = member_index(record(), options.nearest_by);
+    const std::uint64_t capacity = std::uint64_t{*options.slots} * shape.cells();
+    if (const auto reason = refusal(capacity)) throw Error(*reason);
+    allocate_pool(capacity);
+    slots_ = *options.slots;
+    clear();
+}
+
+void NearestStorage::clear() {
+    fill_heads(0, 0, shape_.cells());
+    clear_counters();
+    stored_ = 0;
+}
+
+void NearestStorage::start_anew() {
+    ranked_ = false;
+    rank_words_ = 0;
+    fill_heads(slots_, row(CELLIST_ROW_WANTED), shape_.cells());
+}
+
+void NearestStorage::prepare_pass() {
+    clear();
+    if (!ranked_) {
+        prepare_ranking();
+        mode_ = CELLIST_RANKING;
+    } else {
+        fill_heads(0, row(CELLIST_ROW_EQUALS), shape_.cells());
+        mode_ = CELLIST_CHOOSING;
+    }
+}
+
+/// Room for the thresholds of one more word, and no word among the least.
+void NearestStorage::prepare_ranking() {
+    const std::uint64_t words = row(CELLIST_ROW_LEAST + slots_ + rank_words_ + 1);
+    if (heads_.size_bytes() < words * sizeof(cl_uint)) {
+        Memory heads(device_, words, sizeof(cl_uint), "head buffer");
+        if (heads_.size_bytes() > 0)
+            opencl([&] {
+                device_->ordered_queue().enqueueCopyBuffer(heads_.cl(), heads.cl(), 0, 0,
+                                                           heads_.size_bytes());
+            });
+        heads_ = std::move(heads);
+    }
+    fill_heads(CELLIST_NONE, row(CELLIST_ROW_LEAST), row(slots_));
+}
+
+/// Runs one of the kernels of nearest.cl over all cells.
+void NearestStorage::run(std::optional<Kernel>& kernel, const char* name, const Memory* choice) {
+    if (!kernel) kernel
+        .emplace(this->kernel(name, kernels::nearest_cl, CELLIST_CHOOSING));
+    Arguments arguments;
+    add_to(arguments);
+    if (choice != nullptr) arguments.add(choice->cl());
+    kernel->enqueue(Range::padded(shape_.cells()), arguments);
+}
+
+bool NearestStorage::finish_pass() {
+    if (!ranked_) {
+        mode_ = CELLIST_CHOOSING;
+        run(set_thresholds_, "cellist_set_thresholds");
+        ++rank_words_;
+        ranked_ = true;
+        mode_ = CELLIST_FIXED;
+        return true;
+    }
+    constexpr cl_uint zero = 0;
+    choice_memory_.fill(&zero, sizeof zero, sizeof choice_);
+    run(check_choice_, "cellist_check_choice", &choice_memory_);
+    mode_ = CELLIST_FIXED;
+    reading_ = choice_memory_.read_later(&choice_, sizeof choice_);
+    scan_.sum(heads_.cl(), slots_);
+    reading_ = scan_.read_later(kept_);
+    reading_ = read_counters(counters_);
+    return false;
+}
+
+bool NearestStorage::review_pass(BuildReport& report) {
+    update(report, sum(counters_), kept_.sum);
+    // Records that are equal in every word are the same: any of them will do.
+    if (choice_.undecided == 0 || rank_words_ >= choice_.words) return true;
+    ranked_ = false;
+    return false;
+}
+
+void NearestStorage::make_whole(bool) { mode_ = CELLIST_FIXED; }
+
+std::uint64_t NearestStorage::nodes_for(std::uint64_t, std::uint64_t, std::uint64_t cells) const {
+    return slots_ * cells;
+}
+
+std::function<Validation()> NearestStorage::validate() {
+    struct Check {
+        CellScan::Totals all;
+        Shards shards;
+        Arrival done;
+    };
+    const auto check = std::make_shared<Check>();
+    scan_.sum(heads_.cl(), CELLIST_NONE);
+    check->done = scan_.read_later(check->all);
+    check->done = read_counters(check->shards);
+    return [check, expected = stored_, slots = slots_] {
+        check->done.wait();
+        // The counts are all that says which slots are in use.
+        const std::uint64_t stored = check->all.sum;
+        return Validation{check->all.longest > slots ? std::uint64_t{1} : std::uint64_t{0},
+                          0,
+                          stored > expected ? stored - expected : expected - stored,
+                          sum(check->shards).late,
+                          {}};
+    };
+}
+
+}  // namespace cellist::detail

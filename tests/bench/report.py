@@ -1,0 +1,191 @@
+"""Ratios, tables and plots come out of figures as they should. The figures are made up, and what they
+come to is worked out by hand."""
+
+import pathlib
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "bench/report"))
+
+import documents  # noqa: E402
+import figures  # noqa: E402
+import plots  # noqa: E402
+import ratios  # noqa: E402
+import tables  # noqa: E402
+
+WORKLOAD = "node_bytes:16/occupancy:16/nodes:1024"
+
+
+def benchmark(name, time_ms, **more):
+    return {"name": f"{name}/iterations:1/manual_time", "run_name": name, "run_type": "iteration", "threads": 1,
+            "iterations": 1, "real_time": time_ms, "cpu_time": 1.0, "time_unit": "ms", "least_ms": time_ms,
+            "greatest_ms": time_ms, "samples": 7.0, "items_per_second": 1024e3 / time_ms, **more}
+
+
+def output(kind, *benchmarks):
+    context = {"device": "Device", "platform": "Platform", "driver": "1.2.3", "kind": kind, "threads": "2",
+               "nodes": "1024", "occupancy": "16", "date": "some day"}
+    return {"context": context, "benchmarks": list(benchmarks)}
+
+
+def at(distribution, workload=WORKLOAD):
+    return f"distribution:{distribution}/{workload}"
+
+
+def results_of(*outputs):
+    results = figures.merge(outputs, "full", "abc")
+    results["ratios"] = ratios.compute(results)
+    return results
+
+
+def ratio(results, name, case):
+    found = [r for r in results["ratios"] if r["name"] == name and r["case"] == case]
+    assert len(found) == 1, (name, case, found)
+    return found[0]
+
+
+class Figures(unittest.TestCase):
+    def test_labels_and_counters_are_taken_over(self):
+        results = results_of(output("cpu", benchmark(f"insert/storage:linked/{at('random')}", 2.0, of_ceiling=0.5,
+                                                      ceiling_ms=1.0)))
+        figure = results["figures"][0]
+        self.assertEqual(figure["name"], "insert")
+        self.assertEqual(figure["storage"], "linked")
+        self.assertEqual(figure["nodes"], 1024)
+        self.assertEqual(figure["of_ceiling"], 0.5)
+        self.assertEqual(figure["samples"], 7)
+        self.assertEqual(figure["nodes_per_s"], 512e3)
+        self.assertNotIn("iterations", figure)
+
+    def test_a_failed_case_fails_the_run(self):
+        failed = {"name": "insert/x:1", "error_occurred": True, "error_message": "wrong"}
+        with self.assertRaisesRegex(ValueError, "wrong"):
+            results_of(output("cpu", failed))
+
+    def test_rates_are_compared_with_a_copy_of_the_same_workload(self):
+        results = results_of(output(
+            "gpu",
+            benchmark(f"ceiling/operation:copy/{at('random')}", 1.0, bytes_per_second=200.0),
+            benchmark(f"read/storage:linked/{at('runs')}", 1.0, bytes_per_second=50.0),
+            benchmark("read/storage:linked/distribution:random/node_bytes:8/occupancy:16/nodes:1024", 1.0,
+                      bytes_per_second=50.0)))
+        self.assertEqual([f.get("of_copy") for f in results["figures"]], [1.0, 0.25, None])
+
+    def test_results_are_the_same_after_saving_and_loading(self):
+        results = results_of(output("gpu", benchmark(f"read/storage:fixed/{at('hot')}", 1.25)))
+        with tempfile.TemporaryDirectory() as directory:
+            path = pathlib.Path(directory) / "results.json"
+            figures.save(results, path)
+            self.assertEqual(figures.load(path), results)
+
+
+class Ratios(unittest.TestCase):
+    def test_insert(self):
+        results = results_of(output(
+            "gpu",
+            benchmark(f"insert/storage:linked/{at('random')}", 2.0, of_ceiling=0.94, ceiling_ms=1.88),
+            benchmark(f"insert/storage:linked/{at('coherent')}", 1.0, of_ceiling=0.93, ceiling_ms=0.93),
+            benchmark(f"insert/storage:linked/allocation:global/{at('coherent')}", 7.0, of_ceiling=0.1),
+            benchmark(f"insert/storage:linked/{at('coherent', 'node_bytes:16/occupancy:16/nodes:4096')}", 9.0,
+                      of_ceiling=0.2, ceiling_ms=1.0)))
+        random = ratio(results, "insert_vs_ceiling", "random")
+        self.assertEqual((random["value"], random["goal"], ratios.met(random)), (0.94, 0.95, False))
+        coherent = ratio(results, "insert_vs_ceiling", "coherent")
+        self.assertEqual((coherent["value"], coherent["goal"], ratios.met(coherent)), (0.93, 0.92, True))
+        self.assertEqual(ratio(results, "insert_vs_global_counter", "coherent")["value"], 7.0)
+        hot = ratio(results, "insert_hot_vs_global_counter", "hot")
+        self.assertEqual((hot["value"], hot["goal"], ratios.met(hot)), (None, 20, None))
+
+    def test_build_and_read_against_the_best_of_all_peers(self):
+        results = results_of(output(
+            "cpu",
+            benchmark(f"build_read/input:generated/storage:linked/{at('runs')}", 8.0),
+            benchmark(f"build_read/input:generated/storage:counted/{at('runs')}", 4.0),
+            benchmark(f"build_read/input:stored/storage:counted/{at('runs')}", 5.0),
+            benchmark(f"sort_path/peer:boost_compute/{at('runs')}", 80.0),
+            benchmark(f"sort_path/peer:boost_compute_index/{at('runs')}", 60.0),
+            benchmark(f"sort_path/peer:std_sort/{at('runs')}", 20.0),
+            benchmark(f"sort_path/peer:counting_sort/input:generated/{at('runs')}", 6.0),
+            benchmark(f"sort_path/peer:counting_sort/input:stored/{at('runs')}", 7.0)))
+        self.assertEqual(ratio(results, "build_read_vs_sort", "runs")["value"], 15.0)
+        self.assertEqual(ratio(results, "build_read_vs_sort", "runs, input in memory")["value"], 12.0)
+        self.assertEqual(ratio(results, "build_read_vs_cpp", "runs")["value"], 1.5)
+        self.assertEqual(ratio(results, "build_read_vs_cpp", "runs, input in memory")["value"], 1.4)
+
+    def test_cub_is_the_peer_where_it_ran(self):
+        cub = {"context": {"device": "Device", "cuda_driver": "13.0", "cub": "300000"},
+               "benchmarks": [benchmark(f"sort_path/peer:cub_values/{at('random')}", 6.0),
+                              benchmark(f"sort_path/peer:cub_index/{at('random')}", 5.0)]}
+        results = results_of(output(
+            "gpu", benchmark(f"build_read/input:generated/storage:linked/{at('random')}", 4.0),
+            benchmark(f"sort_path/peer:boost_compute/{at('random')}", 3.0)), cub)
+        self.assertEqual(ratio(results, "build_read_vs_sort", "random")["value"], 1.25)
+        self.assertEqual([r for r in results["ratios"] if r["name"] == "build_read_vs_cpp"], [])
+
+    def test_sorting_takes_the_best_storage(self):
+        workload = at("coherent", "node_bytes:16/occupancy:32/nodes:1024")
+        results = results_of(output("cpu", benchmark(f"sort/storage:linked/{workload}", 3.0),
+                                    benchmark(f"sort/storage:counted/{workload}", 2.0),
+                                    benchmark(f"segmented_sort/peer:std_sort/{workload}", 5.0)))
+        self.assertEqual(ratio(results, "sort_vs_segmented_sort", "lists of 32")["value"], 2.5)
+
+    def test_the_worst_choice_counts(self):
+        cases = []
+        for distribution, (linked, counted, automatic) in {"random": (5.0, 4.0, 4.2), "runs": (2.0, 6.0, 3.0)}.items():
+            for storage, build_ms in (("linked", linked), ("counted", counted), ("automatic", automatic)):
+                reads = "/reads:2" if storage == "automatic" else ""
+                cases.append(benchmark(f"build_read/input:generated/storage:{storage}{reads}/{at(distribution)}",
+                                       build_ms + 1, build_ms=build_ms, read_ms=1.0))
+        results = results_of(output("cpu", *cases))
+        (worst,) = [r for r in results["ratios"] if r["name"] == "auto_vs_best"]
+        self.assertEqual(worst["value"], 1.25)  # (3 + 2) / (2 + 2)
+        self.assertIn("runs", worst["case"])
+        self.assertEqual(ratios.met(worst), False)
+
+    def test_a_small_build_in_microseconds(self):
+        small = ratio(results_of(output("gpu", benchmark("small_build", 0.02))), "small_build_us",
+                      "4096 nodes, 64 x 64 cells")
+        self.assertEqual((small["value"], ratios.met(small)), (20.0, True))
+
+
+class Presentation(unittest.TestCase):
+    def setUp(self):
+        sizes = [f"node_bytes:16/occupancy:16/nodes:{2 ** bits}" for bits in (10, 12)]
+        cases = [benchmark(f"insert/storage:linked/{at(d, size)}", 1.0, of_ceiling=0.5, ceiling_ms=0.5)
+                 for d in ("random", "coherent", "runs", "hot") for size in sizes]
+        cases += [benchmark(f"build_read/input:generated/storage:{storage}/{at('random', sizes[1])}", time_ms,
+                            build_ms=time_ms - 1, read_ms=1.0)
+                  for storage, time_ms in (("linked", 3.0), ("counted", 2.0))]
+        self.results = results_of(output("cpu", *cases))
+
+    def test_a_missed_goal_is_marked(self):
+        text = tables.ratios_as_text(self.results)
+        (line,) = [line for line in text.splitlines() if line.startswith("insert_vs_ceiling_runs")]
+        self.assertIn("MISSED", line)
+        self.assertIn("**0.50 missed**", tables.ratios_as_markdown([self.results]))
+
+    def test_tables_have_a_column_for_each_run(self):
+        for name, table in documents.TABLES.items():
+            if name == "plots":
+                continue
+            widths = {line.count("|") for line in table([self.results, self.results]).splitlines()}
+            self.assertEqual(len(widths), 1)
+
+    def test_plots_are_well_formed(self):
+        for name, svg in plots.draw(self.results).items():
+            with self.subTest(plot=name):
+                root = xml.etree.ElementTree.fromstring(svg)
+                self.assertGreater(len(list(root)), 5)
+        self.assertIn("2.0 ×", plots.crossover(self.results))  # without a read: 2 ms against 1 ms
+
+    def test_processors_and_drivers_have_readable_names(self):
+        results = {**self.results, "device": "pthread-skylake-avx512-AMD EPYC", "driver": "3.1+debian",
+                   "platform": "Portable Computing Language"}
+        self.assertEqual(tables.device_title(results), "PoCL 3.1, 2 cores (AMD EPYC)")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,183 @@
+// Where an OpenCL call fails, whichever it is, the library throws OpenClError that names the call, and
+// leaks nothing; the container keeps its lists or is empty, and then does the same work as ever.
+#include <iostream>
+#include <optional>
+
+#include "layer.hpp"
+#include "operations.hpp"
+#include "support/errors.hpp"
+#include "support/storages.hpp"
+
+namespace cellist::test {
+namespace {
+
+using faults::Fault;
+using faults::Plan;
+using faults::References;
+
+/// Calls the library while calls fail by the plan. The first that failed, if it makes so many.
+/// `silent` tells after the run whether a failure may have ended in no error.
+std::optional<Fault> failure_of(const Plan& plan, auto&& run, const bool& silent) {
+    std::optional<OpenClError> error;
+    std::optional<std::string> wrong;
+    faults::arm(plan);
+    try {
+        run();
+    } catch (const OpenClError& caught) {
+        error = caught;
+    } catch (const std::exception& caught) {
+        wrong = caught.what();
+    } catch (...) {
+        faults::disarm();
+        throw;
+    }
+    const Fault fault = faults::disarm();
+    INFO(fault.call << " failed with " << error_name(fault.code));
+    if (wrong) FAIL("not an OpenClError: " << *wrong);
+    if (fault.call.empty()) {
+        if (error) FAIL(error->what());
+        return {};
+    }
+    if (!error && silent) return fault;
+    REQUIRE(error.has_value());
+    INFO(error->what());
+    REQUIRE(error->code() == fault.code);
+    // The C++ bindings have one name for all calls that retain objects.
+    if (error->call() == "Retain Object")
+        REQUIRE(fault.call.starts_with("clRetain"));
+    else
+        REQUIRE(error->call() == fault.call);
+    REQUIRE((error->log().empty() || fault.call == "clBuildProgram"));
+    return fault;
+}
+
+/// One failure in an operation, and what is left of it. False if the operation makes fewer calls.
+bool fails_well(const Device& on, const Operation& operation, Storage storage, const Plan& plan) {
+    Scene scene(on, storage, operation);
+    const auto run = [&] {
+        scene.silent = false;
+        operation.run(scene);
+    };
+    const bool failed = failure_of(plan, run, scene.silent).has_value();
+    scene.require_contents();
+    if (failed) {
+        run();
+        scene.require_contents();
+    }
+    return failed;
+}
+
+bool fails_well(const Device& on, const Life& life, Storage storage, const Plan& plan) {
+    const auto run = [&] { life.run(on, storage); };
+    return failure_of(plan, run, false).has_value();
+}
+
+/// Compiles what the work needs, and the checks of it.
+void warm_up(const Device& on, const Operation& operation, Storage storage) {
+    Scene scene(on, storage, operation);
+    operation.run(scene);
+    scene.require_contents();
+}
+void warm_up(const Device& on, const Life& life, Storage storage) { life.run(on, storage); }
+
+/// Makes the first call of some work fail and each `step`th after it, one in a run, on all storages.
+/// Where the plan has a second failure, it moves with the first. Returns the number of runs with one.
+std::uint64_t inject(const Device& on, const auto& work, const Plan& plan, std::uint64_t step) {
+    if (!faults::loaded()) FAIL("the environment variable OPENCL_LAYERS must name the fault layer");
+    std::uint64_t injected = 0;
+    for (const Storage storage : all_storages) {
+        warm_up(on, work, storage);
+        const References before = faults::references();
+        for (Plan moved = plan;; ++injected) {
+            INFO(work.name << ", " << name_of(storage) << ", call " << moved.call
+                           << (moved.again != 0 ? " and " + std::to_string(moved.again) : ""));
+            const bool failed = fails_well(on, work, storage, moved);
+            const References after = faults::references();
+            INFO("before: " << before.to_string() << "; after: " << after.to_string());
+            REQUIRE(before == after);
+            if (!failed) break;
+            moved.call += step;
+            if (moved.again != 0) moved.again += step;
+        }
+    }
+    return injected;
+}
+
+std::uint64_t inject_in_operations(const Device& on, const Plan& plan, std::uint64_t step) {
+    std::uint64_t injected = 0;
+    for (const Operation& operation : operations())
+        injected += inject(on, operation, plan, step * operation.step);
+    return injected;
+}
+
+std::uint64_t inject_in_lives(const Plan& plan, std::uint64_t step) {
+    std::uint64_t injected = 0;
+    for (const Life& life : lives()) injected += inject(device(), life, plan, step * life.step);
+    return injected;
+}
+
+TEST_CASE("the layer sees calls and counts references") {
+    const Buffer<cl_uint> warm(device(), 1);
+    REQUIRE(faults::loaded());
+    const References before = faults::references();
+    {
+        const Buffer<cl_uint> buffer(device(), 1);
+        const cl::Buffer copy = buffer.cl();
+        const References held = faults::references();
+        REQUIRE(held.held[References::buffer] == before.held[References::buffer] + 2);
+        faults::arm({.call = 2});
+        device().finish();
+        const auto error = error_of<OpenClError>([] { device().finish(); });
+        device().finish();
+        REQUIRE(faults::disarm().call == "clFinish");
+        REQUIRE(error.call() == "clFinish");
+        REQUIRE(error.code() == CL_OUT_OF_RESOURCES);
+    }
+    REQUIRE(before == faults::references());
+}
+
+TEST_CASE("any call fails once") {
+    const std::uint64_t injected = inject_in_operations(device(), {}, 1) + inject_in_lives({}, 1);
+    std::cout << "faults: " << injected << " injected, one at a time" << std::endl;
+}
+
+TEST_CASE("any call fails once for other reasons than memory") {
+    const std::uint64_t injected = inject_in_operations(device(), {.code = Plan::Code::object}, 5);
+    std::cout << "faults: " << injected << " injected, one at a time, that tell of invalid objects"
+              << std::endl;
+}
+
+TEST_CASE("all calls fail from any one on") {
+    std::uint64_t injected = 0;
+    for (const Plan::Code code : {Plan::Code::resources, Plan::Code::object}) {
+        const Plan plan{.extent = Plan::Extent::lasting, .code = code};
+        injected += inject_in_operations(device(), plan, 9) + inject_in_lives(plan, 13);
+    }
+    std::cout << "faults: " << injected << " injected, with all calls after them" << std::endl;
+}
+
+TEST_CASE("a build fails and so does a call of its cleanup") {
+    std::uint64_t injected = 0;
+    for (const Operation& operation : operations())
+        if (operation.before == Contents::empty)
+            // The second failure comes so many calls after the first, wherever that is.
+            for (const std::uint64_t later : {1u, 2u, 3u, 4u})
+                injected += inject(device(), operation, {.call = later, .again = 2 * later},
+                                   9 * operation.step);
+    std::cout << "faults: " << injected << " injected, with a second one soon after" << std::endl;
+}
+
+TEST_CASE("any call fails once on an out-of-order queue") {
+    std::optional<cl::CommandQueue> queue;
+    try {
+        queue.emplace(device().context(), cl::QueueProperties::OutOfOrder);
+    } catch (const cl::Error&) {
+        return;  // the device has none
+    }
+    const Device own(device().context(), *queue);
+    const std::uint64_t injected = inject_in_operations(own, {}, 7);
+    std::cout << "faults: " << injected << " injected on an out-of-order queue" << std::endl;
+}
+
+}  // namespace
+}  // namespace cellist::test

@@ -1,0 +1,249 @@
+// Overflow::keep_nearest keeps exactly the records of each cell that come first, ties included, whatever
+// the order of insertion.
+#include <bit>
+#include <limits>
+
+#include "support/errors.hpp"
+#include "support/inserts.hpp"
+#include "support/storages.hpp"
+
+namespace cellist::test {
+namespace {
+
+/// An unsigned integer in the order of the key: -inf < ... < -0 < +0 < ... < +inf < NaN.
+std::uint64_t order(cl_float key) {
+    const auto bits = std::bit_cast<std::uint32_t>(key);
+    const std::uint32_t ascending = (bits >> 31) != 0 ? ~bits : bits | 0x80000000u;
+    // Negative NaNs are the lowest here, and come behind everything.
+    return ascending < 0x007FFFFFu ? std::uint64_t{ascending} + (1ull << 32) : ascending;
+}
+std::uint64_t order(cl_uint key) { return key; }
+std::uint64_t order(cl_int key) { return static_cast<cl_uint>(key) ^ 0x80000000u; }
+std::uint64_t order(cl_ulong key) { return key; }
+std::uint64_t order(cl_long key) { return static_cast<cl_ulong>(key) ^ (1ull << 63); }
+
+ListsOptions nearest(std::uint32_t slots, const char* by) {
+    return {.storage = Storage::fixed,
+            .overflow = Overflow::keep_nearest,
+            .slots = slots,
+            .nearest_by = by};
+}
+
+/// Requires that each cell holds the first `slots` of its records by `rank`, in any order.
+template <class T>
+void require_first(const Lists<T>& lists, const Inserts<T>& inserts, std::uint32_t slots,
+                   auto rank) {
+    const HostLists<T> found = lists.download();
+    const Oracle<T> oracle = oracle_of(inserts, lists.shape().cells());
+    for (std::uint64_t cell = 0; cell < found.cells(); ++cell) {
+        std::vector<T> expected;
+        const auto [begin, end] = oracle.equal_range(cell);
+        for (auto entry = begin; entry != end; ++entry) expected.push_back(entry->second);
+        std::sort(expected.begin(), expected.end(),
+                  [&](const T& a, const T& b) { return rank(a) < rank(b); });
+        expected.resize(std::min<std::size_t>(expected.size(), slots));
+        if (sorted_bytes<T>(expected) != sorted_bytes<T>(found.cell(cell)))
+            FAIL("cell " << cell << " keeps other records than the first " << slots);
+    }
+}
+
+void require_report(const BuildReport& report, std::uint64_t attempted, std::uint64_t rejected,
+                    std::uint64_t stored) {
+    REQUIRE(report.attempted == attempted);
+    REQUIRE(report.rejected == rejected);
+    REQUIRE(report.stored == stored);
+    REQUIRE(report.dropped == attempted - rejected - stored);
+}
+
+std::uint64_t kept(const Oracle<Item>& oracle, std::uint64_t cells, std::uint32_t slots) {
+    std::uint64_t sum = 0;
+    for (std::uint64_t cell = 0; cell < cells; ++cell)
+        sum += std::min<std::uint64_t>(oracle.count(cell), slots);
+    return sum;
+}
+
+constexpr auto by_key = [](const Item& item) { return std::pair(order(item.key), item.id); };
+
+TEST_CASE("the records that come first are kept, for every number of slots", "[oclgrind]") {
+    CELLIST_RANDOM(random, 250u);
+    Inserts<Item> inserts = random_inserts(500, 12, random);
+    for (cl_uint i = 0; i < 7; ++i) inserts.add(12 + i, {-1000.0f, i});
+    for (const std::uint32_t slots : {0u, 1u, 2u, 8u, 41u, 100u}) {
+        INFO(slots << " slots");
+        Lists<Item> lists(device(), {4, 3}, nearest(slots, "key"));
+        const BuildReport report = Inserter(lists).build(lists, inserts);
+        require_report(report, 507, 7, kept(oracle_of(inserts, 12), 12, slots));
+        require_sound(lists, report.stored);
+        require_first(lists, inserts, slots, by_key);
+    }
+}
+
+TEST_CASE("hundreds of thousands of records are kept from in few passes") {
+    CELLIST_RANDOM(random, 251u);
+    Inserts<Item> inserts;
+    for (cl_uint i = 0; i < 300'000; ++i)
+        inserts.add(below(random, 1000), {std::bit_cast<cl_float>(below(random, 0x7F000000u)), i});
+    Lists<Item> lists(device(), {1000}, nearest(16, "key"));
+    Inserter inserter(lists);
+    for (int i = 0; i < 2; ++i) {
+        const BuildReport report = inserter.build(lists, inserts);
+        require_report(report, 300'000, 0, 16'000);
+        REQUIRE(report.passes <= 4);
+        require_first(lists, inserts, 16, by_key);
+    }
+    lists.sort(&Item::key);
+    require_first(lists, inserts, 16, by_key);
+}
+
+TEST_CASE("ties are decided by the other members, the same in every order of insertion") {
+    CELLIST_RANDOM(random, 252u);
+    Inserts<Item> inserts;
+    for (cl_uint i = 0; i < 3000; ++i)
+        inserts.add(below(random, 7), {static_cast<cl_float>(below(random, 4)), i / 3});
+    Lists<Item> lists(device(), {7}, nearest(10, "key"));
+    Inserter inserter(lists);
+    std::vector<Item> first;
+    for (int i = 0; i < 20; ++i) {
+        inserts.shuffle(random);
+        const BuildReport report = inserter.build(lists, inserts);
+        require_report(report, 3000, 0, 70);
+        REQUIRE(report.passes == 4);
+        require_first(lists, inserts, 10, by_key);
+        lists.sort(&Item::key);
+        const std::vector<Item> records = lists.download().records();
+        if (i == 0) first = records;
+        REQUIRE(records == first);
+    }
+}
+
+TEST_CASE("records that are the same in every member are kept as often as there is room") {
+    Inserts<Item> inserts;
+    for (cl_uint i = 0; i < 1000; ++i) inserts.add(i % 3, {2.5f, 7});
+    Lists<Item> lists(device(), {3}, nearest(5, "key"));
+    const BuildReport report = Inserter(lists).build(lists, inserts);
+    require_report(report, 1000, 0, 15);
+    require_first(lists, inserts, 5, by_key);
+}
+
+struct Keys {
+    cl_uint a;
+    cl_int b;
+    cl_ulong c;
+    cl_long d;
+    cl_uint e[2];
+};
+CELLIST_STRUCT(Keys, a, b, c, d, e);
+
+auto rank_by(const Keys& keys, std::uint64_t first) {
+    return std::tuple(first, order(keys.a), order(keys.b), order(keys.c), order(keys.d), keys.e[0],
+                      keys.e[1]);
+}
+
+TEST_CASE("keys of 32 and 64 bits are ranked, borders and few different values among them") {
+    CELLIST_RANDOM(random, 253u);
+    const std::vector<cl_ulong> borders{0,
+                                        1,
+                                        0x7FFFFFFF,
+                                        0x80000000,
+                                        0xFFFFFFFF,
+                                        0x100000000,
+                                        0x7FFFFFFFFFFFFFFF,
+                                        0x8000000000000000,
+                                        0xFFFFFFFFFFFFFFFF};
+    const auto any = [&] { return borders[below(random, static_cast<cl_uint>(borders.size()))]; };
+    Inserts<Keys> inserts;
+    for (cl_uint i = 0; i < 2000; ++i)
+        inserts.add(below(random, 5), {static_cast<cl_uint>(any()),
+                                       static_cast<cl_int>(any()),
+                                       any(),
+                                       static_cast<cl_long>(any()),
+                                       {below(random, 2), below(random, 100)}});
+    const auto check = [&](const char* member, auto key) {
+        INFO("by " << member);
+        for (const std::uint32_t slots : {1u, 9u, 200u}) {
+            Lists<Keys> lists(device(), {5}, nearest(slots, member));
+            const BuildReport report = Inserter(lists).build(lists, inserts);
+            REQUIRE(report.stored == 5 * slots);
+            require_first(lists, inserts, slots,
+                          [&](const Keys& keys) { return rank_by(keys, key(keys)); });
+        }
+    };
+    check("a", [](const Keys& keys) { return order(keys.a); });
+    check("b", [](const Keys& keys) { return order(keys.b); });
+    check("c", [](const Keys& keys) { return order(keys.c); });
+    check("d", [](const Keys& keys) { return order(keys.d); });
+}
+
+TEST_CASE("floats are ranked from -inf to +inf, -0 before +0, NaN last") {
+    CELLIST_RANDOM(random, 254u);
+    const std::vector<cl_uint> bits{0x00000000, 0x80000000, 0x00000001, 0x80000001, 0x007FFFFF,
+                                    0x3F800000, 0xBF800000, 0x7F7FFFFF, 0xFF7FFFFF, 0x7F800000,
+                                    0xFF800000, 0x7FC00000, 0xFFC00000, 0x7FFFFFFF, 0xFFFFFFFF};
+    for (const std::uint32_t slots : {1u, 5u, 60u, 150u}) {
+        INFO(slots << " slots");
+        Inserts<Item> inserts;
+        for (cl_uint i = 0; i < 400; ++i)
+            inserts.add(
+                i % 2,
+                {std::bit_cast<cl_float>(bits[below(random, static_cast<cl_uint>(bits.size()))]),
+                 i});
+        Lists<Item> lists(device(), {2}, nearest(slots, "key"));
+        require_report(Inserter(lists).build(lists, inserts), 400, 0, 2 * slots);
+        require_first(lists, inserts, slots, by_key);
+    }
+}
+
+TEST_CASE("what cannot keep the nearest is refused") {
+    const auto refused = [](const ListsOptions& options) {
+        const auto error = error_of([&] { Lists<Item>(device(), {5}, options); });
+        return std::string(error.what());
+    };
+    REQUIRE(contains(refused(nearest(4, "depth")), "depth"));
+    REQUIRE(contains(refused(nearest(4, "")), "scalar member of Item"));
+    ListsOptions options = nearest(4, "key");
+    options.slots.reset();
+    REQUIRE(contains(refused(options), "slots"));
+    for (const Storage storage : {Storage::linked, Storage::counted}) {
+        options = nearest(4, "key");
+        options.storage = storage;
+        options.capacity_nodes = 10;
+        REQUIRE(contains(refused(options), "Storage::fixed"));
+    }
+    const auto error = error_of([] { Lists<Keys>(device(), {5}, nearest(4, "e")); });
+    REQUIRE(contains(error.what(), "scalar member"));
+}
+
+TEST_CASE("a build that keeps the nearest is started without blocking, and beside others") {
+    CELLIST_RANDOM(random, 255u);
+    Inserts<Item> inserts;
+    for (cl_uint i = 0; i < 3000; ++i)
+        inserts.add(below(random, 7), {static_cast<cl_float>(below(random, 4)), i});
+    Lists<Item> few(device(), {7}, nearest(10, "key"));
+    const Storage other = GENERATE(Storage::linked, Storage::counted, Storage::fixed);
+    Lists<Item> all(device(), {7}, {.storage = other, .capacity_nodes = 10});
+    Kernel kernel(device(), insert_source("Item"), "insert_all", few);
+    const Buffer<cl_uint> cells(device(), inserts.cells);
+    const Buffer<Item> records(device(), inserts.records);
+    auto pending = build_async(
+        [&] {
+            kernel.run(3000, few, cells, records, cl_uint{3000});
+            kernel.run(3000, all, cells, records, cl_uint{3000});
+        },
+        few, all);
+    few.sort(&Item::key);
+    require_first(few, inserts, 10, by_key);
+    const auto [report_few, report_all] = pending.get();
+    require_report(report_few, 3000, 0, 70);
+    require_complete(report_all, 3000);
+    require_same(all.download(), oracle_of(inserts, 7));
+    require_sound(few, 70);
+}
+
+TEST_CASE("a shape without cells keeps nothing") {
+    CELLIST_RANDOM(random, 256u);
+    Lists<Item> lists(device(), {0}, nearest(4, "key"));
+    require_report(Inserter(lists).build(lists, random_inserts(144, 50, random)), 144, 144, 0);
+}
+
+}  // namespace
+}  // namespace cellist::test
