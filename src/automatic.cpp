@@ -145,14 +145,13 @@ BuildReport ListsCore::build_once(const std::function<void()>& insert) {
 }
 
 BuildReport ListsCore::build(const std::function<void()>& insert) {
-    for (;;) {
+    for (std::size_t others = choices.size() - 1;; --others) {
         try {
             return build_once(insert);
         } catch (const OpenClError& error) {
             // Drivers may find out in the midst of a build that they have no memory for it.
-            if (!chooser_ || !out_of_memory(error) ||
-                !chooser_->exclude(in_use_,
-                                   std::string("left: ") + error.call() + " found no memory"))
+            if (!chooser_ || !out_of_memory(error) || others == 0 ||
+                !chooser_->exclude(in_use_, "left: " + error.call() + " found no memory"))
                 throw;
         }
     }
