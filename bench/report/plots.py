@@ -153,5 +153,8 @@ def crossover(results):
 
 
 def draw(results):
-    """The plots by name."""
-    return {"throughput": throughput(results), "ceiling": of_ceiling(results), "crossover": crossover(results)}
+    """The plots by name; those that the run has figures for."""
+    drawn = {"throughput": throughput(results), "ceiling": of_ceiling(results)}
+    if select(results["figures"], "storage"):
+        drawn["crossover"] = crossover(results)
+    return drawn
