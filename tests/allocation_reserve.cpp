@@ -285,7 +285,7 @@ TEST_CASE("reservations are handed to functions, and negative numbers reserve no
     }
 }
 
-TEST_CASE("a few reservations overflow a small pool", "[oclgrind]") {
+TEST_CASE("a few reservations overflow a small pool") {
     Plan plan;
     for (cl_uint i = 0; i < 40; ++i) plan.add(4, 1 + i % 4);
     for (const std::uint64_t capacity : {61u, 200u}) {
