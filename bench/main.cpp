@@ -112,6 +112,7 @@ int main(int argc, char** argv) try {
     add_insert(suite);
     add_build(suite);
     add_read(suite);
+    add_storage(suite);
     add_sort(suite);
     add_nearest(suite);
     add_pack(suite);

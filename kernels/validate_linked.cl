@@ -10,16 +10,6 @@
 // hold, and no address outside of the pool is read.
 #include <cellist/lists.clh>
 
-static inline int cellist_is_allocated(volatile global cellist_shard* shards,
-                                       const cellist_view view, uint node) {
-    if (node >= view.capacity_nodes) return 0;
-    const uint block = node >> CELLIST_BLOCK_BITS;
-    const uint shard = block & ((1u << view.shard_bits) - 1u);
-    const uint n =
-        ((block >> view.shard_bits) << CELLIST_BLOCK_BITS) | (node & (CELLIST_BLOCK_NODES - 1u));
-    return n < shards[shard].allocated;
-}
-
 kernel void cellist_validate_linked(CELLIST_LISTS(CELLIST_RECORD, lists),
                                     volatile global uint* reached,
                                     volatile global cellist_findings* findings) {

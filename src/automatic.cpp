@@ -44,8 +44,11 @@ void ListsCore::use(Storage storage) {
             definitions_.modes = storage_->mode();
             return;
         } catch (const Error& reason) {
+            const auto* failure = dynamic_cast<const OpenClError*>(&reason);
+            const bool in_all = failure != nullptr && !out_of_memory(*failure);
             // Linked lists have the widest limits: what stops them is what counts.
-            if (!error || *next == Storage::linked) error = std::current_exception();
+            if (!error || in_all || *next == Storage::linked) error = std::current_exception();
+            if (in_all) break;
             next = chooser_->exclude(*next, std::string("not possible: ") + reason.what());
         }
     }
@@ -84,6 +87,8 @@ bool ListsCore::review(BuildReport& report) {
         bool replaced = false;
         try {
             replaced = replace(report, "left: the lists did not fit any more", false);
+        } catch (const OpenClError& failure) {
+            if (!out_of_memory(failure)) throw;
         } catch (const Error&) {
             // The others have no room either.
         }
@@ -97,11 +102,10 @@ bool ListsCore::review_may_change() const { return chooser_ || storage_->may_gro
 BuildReport ListsCore::measure(const std::function<void()>& insert, Trial& trial) {
     settle();
     BuildReport report;
-    trial.cost.build_seconds =
-        seconds(*device_, [&] { report = finish(*start_build({this}, insert)).front(); });
-    trial.stored = report.stored;
-
     try {
+        trial.cost.build_seconds =
+            seconds(*device_, [&] { report = finish(*start_build({this}, insert)).front(); });
+        trial.stored = report.stored;
         measure_walk(trial);
     } catch (...) {
         empty_after_failure(false);
@@ -145,15 +149,18 @@ BuildReport ListsCore::build_once(const std::function<void()>& insert) {
 }
 
 BuildReport ListsCore::build(const std::function<void()>& insert) {
-    for (;;) {
+    std::exception_ptr first;
+    for (std::size_t tried = 1;; ++tried) {
         try {
             return build_once(insert);
         } catch (const OpenClError& error) {
-            // Drivers may find out in the midst of a build that they have no memory for it.
-            if (!chooser_ || !out_of_memory(error) ||
+            if (!first) first = std::current_exception();
+            // Drivers may find out in the midst of a build that they have no memory for it. Where all
+            // storages fail, the device is lost.
+            if (!chooser_ || !out_of_memory(error) || tried == choices.size() ||
                 !chooser_->exclude(in_use_,
                                    std::string("left: ") + error.call() + " found no memory"))
-                throw;
+                std::rethrow_exception(first);
         }
     }
 }

@@ -70,6 +70,8 @@ DeviceInfo describe(const cl::Device& device) {
     info.int64_atomics = has("cl_khr_int64_base_atomics");
     info.sub_groups = has("cl_khr_subgroups") || has("cl_intel_subgroups");
     info.fp64 = device.getInfo<CL_DEVICE_DOUBLE_FP_CONFIG>() != 0;
+    if (has("cl_nv_device_attribute_query"))
+        info.lanes = device.getInfo<CL_DEVICE_COMPUTE_CAPABILITY_MAJOR_NV>() >= 7;
     return info;
 }
 

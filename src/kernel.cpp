@@ -30,14 +30,19 @@ struct Parameter {
 };
 
 ProgramText whole_source(const Source& source, const detail::Definitions& definitions,
-                         cl_uint modes) {
+                         cl_uint modes, bool lanes) {
     bool uses_glm = false;
     const std::string text = detail::without_library_includes(source.text, uses_glm);
     detail::Definitions all = definitions;
     if (uses_glm) all.add(detail::glm_source());
     ProgramText whole;
     whole.add("#define CELLIST_MODES " + std::to_string(modes) + "u", "modes");
+    whole.add(std::string("#ifndef CELLIST_LANES\n#define CELLIST_LANES ") + (lanes ? "1" : "0") +
+                  "\n#endif",
+              "lanes");
     whole.add(kernels::view_h, "cellist/view.h");
+    whole.add(kernels::lanes_clh, "cellist/lanes.clh");
+    whole.add(kernels::allocation_clh, "cellist/allocation.clh");
     whole.add(kernels::lists_clh, "cellist/lists.clh");
     whole.add(all.source(), "structs");
     whole.add(text, source.file_name);
@@ -50,7 +55,7 @@ const cl::Program& build(detail::DeviceState& device, const Source& source,
     if (definitions.needs_fp64 && !device.info.fp64)
         throw Error("a struct has members of type double, which " + device.info.name +
                     " does not support");
-    const ProgramText whole = whole_source(source, definitions, modes);
+    const ProgramText whole = whole_source(source, definitions, modes, device.info.lanes);
     try {
         return device.program(whole.text(), "-cl-std=CL1.2 -cl-kernel-arg-info " + source.options);
     } catch (const OpenClError& error) {

@@ -67,6 +67,7 @@ void ListStorage::add_to(Arguments& arguments) const {
         slots_,
         static_cast<cl_uint>(slice_.first_cell),
         open_ ? static_cast<cl_uint>(slice_.cells) : 0,
+        open_ && reserves_ ? 1u : 0u,
         rank_member_,
         rank_words_};
     arguments.add_nodes(nodes_.cl(), record().name);
@@ -173,6 +174,8 @@ ListStorage::Counters ListStorage::sum(const Shards& shards) {
         sum.dropped += wide(shard.dropped_low, shard.dropped_high);
         sum.rejected += wide(shard.rejected_low, shard.rejected_high);
         sum.late += wide(shard.late_low, shard.late_high);
+        sum.open_reservations += shard.open_reservations;
+        sum.missing += wide(shard.missing_low, shard.missing_high);
     }
     return sum;
 }

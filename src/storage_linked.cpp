@@ -19,6 +19,7 @@ LinkedStorage::LinkedStorage(std::shared_ptr<DeviceState> device, const Definiti
         options.capacity_nodes.value_or(std::max(shape.cells(), default_capacity_nodes));
     if (!options.capacity_nodes && refusal(capacity)) capacity = 0;
     if (const auto reason = refusal(capacity)) throw Error(*reason);
+    set_slice(slice_);
     allocate_pool(capacity);
     clear();
 }
@@ -27,6 +28,7 @@ void LinkedStorage::clear() {
     fill_heads(CELLIST_NONE);
     clear_counters();
     stored_ = 0;
+    unlinked_ = 0;
 }
 
 bool LinkedStorage::finish_pass() {
@@ -36,13 +38,30 @@ bool LinkedStorage::finish_pass() {
 
 bool LinkedStorage::review_pass(BuildReport& report) {
     const Counters counters = sum(counters_);
-    update(report, counters, counters.allocated);
+    unlinked_ = counters.open_reservations == 0 ? 0 : count_unlinked();
+    update(report, counters, counters.allocated - unlinked_);
     if (counters.dropped == 0 || options_.overflow == Overflow::drop) return true;
 
-    const std::uint64_t demand = report.stored + report.dropped;
+    const std::uint64_t demand = counters.allocated + counters.dropped + counters.missing;
     require(demand, report);
     grow_pool(demand, report);
     return false;
+}
+
+/// Nodes that reservations hold and no link has taken. Blocks.
+std::uint64_t LinkedStorage::count_unlinked() {
+    constexpr cl_uint zero = 0;
+    Memory memory(device_, 1, sizeof zero, "count of nodes");
+    memory.fill(&zero, sizeof zero, sizeof zero);
+    if (!unlinked_kernel_)
+        unlinked_kernel_.emplace(kernel("cellist_unlinked", kernels::unlinked_cl, mode_));
+    Arguments arguments;
+    add_to(arguments);
+    arguments.add(memory.cl());
+    unlinked_kernel_->enqueue(Range::padded(capacity_nodes_), arguments);
+    cl_uint count = 0;
+    memory.read(&count, sizeof count);
+    return count;
 }
 
 void LinkedStorage::make_whole(bool without_pool) {
@@ -53,7 +72,14 @@ std::uint64_t LinkedStorage::nodes_for(std::uint64_t total, std::uint64_t, std::
     return total;
 }
 
+void LinkedStorage::set_slice(const Slice& slice) {
+    ListStorage::set_slice(slice);
+    reserves_ = options_.allocation == Allocation::reserved;
+}
+
+/// The pool has room for no more than the records of the slice, so reservations take no nodes.
 void LinkedStorage::reserve(std::uint64_t total, std::uint64_t) {
+    reserves_ = false;
     if (options_.overflow == Overflow::grow && capacity_nodes_ < total) allocate_pool(total);
 }
 
@@ -75,12 +101,15 @@ std::function<Validation()> LinkedStorage::validate() {
     arguments.add(check->reached.cl());
     check->done = find(check->findings, *validate_, arguments);
     check->done = read_counters(check->shards);
-    return [check] {
+    return [check, unlinked = unlinked_] {
         check->done.wait();
         const cellist_findings& found = check->findings.found;
         const Counters counters = sum(check->shards);
-        return Validation{found.broken, found.repeated, counters.allocated - found.nodes,
-                          counters.late, bad_cell(found)};
+        // A list that leads to an unlinked node is broken there, with that node counted in.
+        const std::uint64_t linked = counters.allocated - unlinked;
+        return Validation{found.broken, found.repeated,
+                          linked - std::min<std::uint64_t>(linked, found.nodes), counters.late,
+                          bad_cell(found)};
     };
 }
 

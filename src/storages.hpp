@@ -14,6 +14,7 @@ public:
                   const Shape& shape, const ListsOptions& options);
     void clear() override;
     std::function<Validation()> validate() override;
+    void set_slice(const Slice& slice) override;
     std::uint64_t nodes_for(std::uint64_t total, std::uint64_t longest,
                             std::uint64_t cells) const override;
     void reserve(std::uint64_t total, std::uint64_t longest) override;
@@ -23,6 +24,10 @@ private:
     bool review_pass(BuildReport& report) override;
     void make_whole(bool without_pool) override;
 
+    [[nodiscard]] std::uint64_t count_unlinked();
+
+    std::uint64_t unlinked_ = 0;  ///< nodes that reservations of the last build did not use
+    std::optional<Kernel> unlinked_kernel_;
     std::optional<Kernel> validate_;
 };
 

@@ -1,8 +1,9 @@
 """Results, tables and plots of the benchmarks; scripts/bench calls it.
 
-  merge --effort E --git HASH --out RESULTS.json OUTPUT.json...   results from the programs' output
-  ratios RESULTS.json                                             the table of ratios
-  plots RESULTS.json DIRECTORY                                    plots, as SVG
+  merge --effort E --git HASH [--note TEXT] --out RESULTS.json OUTPUT.json...
+                              results from the programs' output
+  ratios RESULTS.json         the table of ratios
+  plots RESULTS.json DIRECTORY    plots, as SVG
   documents [--check]         tables and plots in the documentation from bench/results; --check changes
                               nothing, and exits with 1 where they do not agree
 """
@@ -19,7 +20,8 @@ import tables
 
 
 def _merge(options):
-    results = figures.merge([figures.load(path) for path in options.outputs], options.effort, options.git)
+    results = figures.merge([figures.load(path) for path in options.outputs], options.effort, options.git,
+                            options.note)
     results["ratios"] = ratios.compute(results)
     figures.save(results, options.out)
 
@@ -52,6 +54,7 @@ def main():
     merge = commands.add_parser("merge")
     merge.add_argument("--effort", required=True)
     merge.add_argument("--git", required=True)
+    merge.add_argument("--note", default="")
     merge.add_argument("--out", required=True)
     merge.add_argument("outputs", nargs="+")
     merge.set_defaults(run=_merge)

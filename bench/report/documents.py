@@ -12,12 +12,32 @@ import tables
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENTS = ("README.md", "docs/performance.md")
+PLOT_TITLES = {
+    "throughput": "throughput against size",
+    "ceiling": "inserts against the ceiling",
+    "crossover": "the fastest storage",
+}
+
+
+def _plots_of(results):
+    """The plots of a run by file name. Only a full one has all sizes; plots of others would show points."""
+    if results["effort"] != "full":
+        return {}
+    return {f"bench-{results['file']}-{plot}.svg": (plot, svg) for plot, svg in plots.draw(results).items()}
+
+
+def _plots(all_results):
+    """Every plot, with a title."""
+    return "\n\n".join(f"![{tables.device_title(results)}: {PLOT_TITLES[plot]}](images/{name})"
+                       for results in all_results for name, (plot, _) in _plots_of(results).items())
+
+
 TABLES = {
     "summary": tables.summary_as_markdown,
     "ratios": tables.ratios_as_markdown,
     "conditions": tables.conditions_as_markdown,
     "times": tables.times_as_markdown,
-    "plots": tables.plots_as_markdown,
+    "plots": _plots,
 }
 _BLOCK = re.compile(r"(<!-- results: (\w+) -->\n)(.*?)(<!-- end of results -->)", re.DOTALL)
 
@@ -32,9 +52,9 @@ def _contents():
         path = ROOT / name
         text = path.read_text(encoding="utf-8")
         contents[path] = _BLOCK.sub(lambda block: block[1] + TABLES[block[2]](runs) + "\n" + block[4], text)
-    for results in tables.full_runs(runs):
-        for plot, svg in plots.draw(results).items():
-            contents[ROOT / f"docs/images/bench-{results['file']}-{plot}.svg"] = svg
+    for results in runs:
+        for name, (_, svg) in _plots_of(results).items():
+            contents[ROOT / "docs/images" / name] = svg
     return contents
 
 

@@ -3,6 +3,7 @@
   device, driver, platform, kind ("gpu" or "cpu"), threads, cuda_driver, cub
   git          the commit that was measured
   effort       tiny, quick or full
+  note         what a reader has to know of the run, where there is something
   nodes, occupancy    of the workload that ratios are taken of
   figures      one for each case: {name, <labels of the case>, time_ms, least_ms, greatest_ms, samples, ...}
   ratios       see ratios.py
@@ -41,7 +42,7 @@ def _figure(benchmark):
     return {key: _rounded(value) for key, value in figure.items()}
 
 
-def merge(documents, effort, git):
+def merge(documents, effort, git, note=""):
     """Results from the output of one or several programs; the first is cellist_bench's."""
     context = documents[0]["context"]
     results = {key: context[key] for key in ("device", "platform", "driver", "kind")}
@@ -49,6 +50,8 @@ def merge(documents, effort, git):
     for document in documents[1:]:
         results.update({key: document["context"][key] for key in ("cuda_driver", "cub")})
     results.update({"git": git, "effort": effort})
+    if note:
+        results["note"] = note
     results["figures"] = [_figure(b) for document in documents for b in document["benchmarks"]]
     copies = {_workload(f): f["bytes_per_s"]
               for f in select(results["figures"], "ceiling", operation="copy", distribution="random")}

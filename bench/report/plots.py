@@ -4,6 +4,7 @@ import math
 from xml.sax.saxutils import escape
 
 from figures import select
+from ratios import storage_times
 from tables import device_title, power_of_two
 
 DISTRIBUTIONS = ("random", "coherent", "runs", "skewed", "hot")
@@ -125,11 +126,8 @@ def of_ceiling(results):
 
 def crossover(results):
     """Which storage takes least for a build and a number of reads, and how much less than the next."""
-    grid = {}
-    for figure in select(results["figures"], "build_read", input="generated", node_bytes=16):
-        if figure["storage"] in STORAGES and figure["nodes"] != results["nodes"]:
-            key = (figure["distribution"], figure["occupancy"], figure["nodes"])
-            grid.setdefault(key, {})[figure["storage"]] = figure
+    grid = {(figure["distribution"], figure["occupancy"], figure["nodes"]): figure
+            for figure in select(results["figures"], "storage")}
     width, height, left, top = 84, 22, 240, 88
     rows = sorted(grid, key=lambda key: (DISTRIBUTIONS.index(key[0]), key[1]))
     parts = [_text(16, 24, f"The fastest storage: {device_title(results)}", size=15),
@@ -143,8 +141,8 @@ def crossover(results):
         y = top + height * row
         parts.append(_text(left - 8, y + 15, f"{key[0]}, {key[1]} a cell, {power_of_two(key[2])} nodes", "end"))
         for column, reads in enumerate(READS):
-            totals = sorted((figure["build_ms"] + reads * figure["read_ms"], storage)
-                            for storage, figure in grid[key].items())
+            times = storage_times(grid[key], reads)
+            totals = sorted((times[storage], storage) for storage in STORAGES if storage in times)
             x = left + width * column
             colour = COLOURS[STORAGES.index(totals[0][1])]
             parts.append(f'<rect x="{x}" y="{y}" width="{width - 1}" height="{height - 1}" fill="{colour}"/>')
@@ -155,5 +153,8 @@ def crossover(results):
 
 
 def draw(results):
-    """The plots by name."""
-    return {"throughput": throughput(results), "ceiling": of_ceiling(results), "crossover": crossover(results)}
+    """The plots by name; those that the run has figures for."""
+    drawn = {"throughput": throughput(results), "ceiling": of_ceiling(results)}
+    if select(results["figures"], "storage"):
+        drawn["crossover"] = crossover(results)
+    return drawn

@@ -81,12 +81,12 @@ def ratios_as_markdown(all_results):
 
 def conditions_as_markdown(all_results):
     """What was measured on what."""
-    lines = ["| device | driver | nodes, cells | peers | commit |", "|---|---|---|---|---|"]
+    lines = ["| device | driver | nodes, cells | peers | commit | note |", "|---|---|---|---|---|---|"]
     for results in all_results:
         peers = sorted({f["peer"] for f in results["figures"] if f["name"] == "sort_path"})
         lines.append(f"| {device_title(results)} | {results['driver']} | {power_of_two(results['nodes'])}, "
                      f"{power_of_two(results['nodes'] // results['occupancy'])} | {', '.join(peers)} | "
-                     f"{results['git']} |")
+                     f"{results['git']} | {results.get('note', '')} |")
     return "\n".join(lines)
 
 
@@ -127,7 +127,8 @@ def summary_as_markdown(all_results):
         add(f"sort lists of {length}, against segmented sort or `std::sort`",
             ratio("sort_vs_segmented_sort", f"lists of {length}"))
     head = "| | " + " | ".join(device_title(results) for results in all_results) + " |"
-    return "\n".join([head, "|---|" + "---|" * len(all_results), *rows])
+    notes = [f"{device_title(results)}: {results['note']}." for results in all_results if results.get("note")]
+    return "\n".join([head, "|---|" + "---|" * len(all_results), *rows, *(["", *notes] if notes else [])])
 
 
 def times_as_markdown(all_results):
@@ -152,16 +153,3 @@ def times_as_markdown(all_results):
             add(f"{name}, {storage}",
                 [_base(r, name, storage=storage, allocation=None, distribution="random") for r in all_results])
     return "\n".join(lines)
-
-
-def full_runs(all_results):
-    """Those that measured all sizes: plots of the others would show points."""
-    return [results for results in all_results if results["effort"] == "full"]
-
-
-def plots_as_markdown(all_results):
-    """The plots of each full run, as they are named under docs/images."""
-    titles = {"throughput": "throughput against size", "ceiling": "inserts against the ceiling",
-              "crossover": "the fastest storage"}
-    return "\n\n".join(f"![{device_title(results)}: {title}](images/bench-{results['file']}-{plot}.svg)"
-                         for results in full_runs(all_results) for plot, title in titles.items())

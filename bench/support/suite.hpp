@@ -75,6 +75,7 @@ void add_insert(Suite& suite);
 void add_build(Suite& suite);
 void add_read(Suite& suite);
 void add_sort(Suite& suite);
+void add_storage(Suite& suite);
 void add_nearest(Suite& suite);
 void add_pack(Suite& suite);
 void add_clear(Suite& suite);

@@ -41,8 +41,7 @@ std::vector<Workload> random_and_coherent(std::vector<Workload> workloads) {
 }
 
 std::string Keeping::name() const {
-    return "storage:" + storage + (allocation.empty() ? "" : "/allocation:" + allocation) +
-           (reads == 0 ? "" : "/reads:" + std::to_string(reads));
+    return "storage:" + storage + (allocation.empty() ? "" : "/allocation:" + allocation);
 }
 
 const std::vector<Keeping>& storages() {
@@ -55,7 +54,10 @@ const std::vector<Keeping>& storages() {
 }
 
 const std::vector<Keeping>& automatic_storages() {
-    static const std::vector<Keeping> all{};
+    static const std::vector<Keeping> all{
+        {"automatic_1", "", {.storage = cellist::Storage::automatic, .expected_reads = 1}},
+        {"automatic_8", "", {.storage = cellist::Storage::automatic, .expected_reads = 8}},
+    };
     return all;
 }
 

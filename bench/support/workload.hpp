@@ -52,15 +52,14 @@ struct Keeping {
     std::string storage;     ///< as benchmarks are named
     std::string allocation;  ///< the same; empty for what the options take by default
     cellist::ListsOptions options;
-    cl_uint reads = 0;  ///< that the options tell the library to expect; 0 where they do not
 
     [[nodiscard]] std::string name() const;
 };
 
 /// The storages, each with its default options.
 [[nodiscard]] const std::vector<Keeping>& storages();
-/// The storage that the library chooses itself, once for each number of reads that it is told to expect;
-/// none where it has no such choice.
+/// The storage that the library chooses itself, as automatic_1 and automatic_8 where it is told to expect
+/// one read or eight.
 [[nodiscard]] const std::vector<Keeping>& automatic_storages();
 /// Linked lists with each allocation, by its name.
 [[nodiscard]] const std::vector<Keeping>& allocations();

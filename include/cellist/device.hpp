@@ -29,6 +29,7 @@ struct DeviceInfo {
     bool int64_atomics = false;
     bool sub_groups = false;
     bool fp64 = false;
+    bool lanes = false;  ///< warps whose lanes can exchange values: NVIDIA, compute capability 7.0
 };
 
 /// An OpenCL device with a context, a queue and a cache of built programs. Everything that is made

@@ -37,8 +37,10 @@ enum class Storage {
 
 /// How kernels get nodes from the pool of Storage::linked.
 enum class Allocation {
-    sharded,  ///< up to 256 counters, probed in turn when one runs out
-    global,   ///< one counter; slower wherever many work-items insert, for comparison
+    sharded,   ///< up to 256 counters, probed in turn when one runs out
+    global,    ///< one counter; slower wherever many work-items insert, for comparison
+    reserved,  ///< sharded, and cellist_reserve takes its nodes at once; slower on all devices
+               ///< measured but where all records go to one cell of a CPU
 };
 
 struct ListsOptions {

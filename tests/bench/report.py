@@ -133,15 +133,18 @@ class Ratios(unittest.TestCase):
         self.assertEqual(ratio(results, "sort_vs_segmented_sort", "lists of 32")["value"], 2.5)
 
     def test_the_worst_choice_counts(self):
-        cases = []
-        for distribution, (linked, counted, automatic) in {"random": (5.0, 4.0, 4.2), "runs": (2.0, 6.0, 3.0)}.items():
-            for storage, build_ms in (("linked", linked), ("counted", counted), ("automatic", automatic)):
-                reads = "/reads:2" if storage == "automatic" else ""
-                cases.append(benchmark(f"build_read/input:generated/storage:{storage}{reads}/{at(distribution)}",
-                                       build_ms + 1, build_ms=build_ms, read_ms=1.0))
-        results = results_of(output("cpu", *cases))
+        def case(distribution, linked, fixed, automatic_1, automatic_8, nodes_a_record=2.0):
+            counters = {}
+            for storage, build_ms in (("linked", linked), ("fixed", fixed), ("automatic_1", automatic_1),
+                                      ("automatic_8", automatic_8)):
+                counters.update({f"{storage}_build_ms": build_ms, f"{storage}_read_ms": 1.0,
+                                 f"{storage}_nodes_a_record": nodes_a_record})
+            return benchmark(f"storage/{at(distribution, 'node_bytes:16/occupancy:1/nodes:65536')}", 9.0, **counters)
+
+        results = results_of(output("cpu", case("random", 5.0, 4.0, 4.2, 4.2), case("runs", 2.0, 6.0, 2.75, 3.0),
+                                    case("hot", 4.0, 1.0, 4.0, 4.0, nodes_a_record=5.0)))
         (worst,) = [r for r in results["ratios"] if r["name"] == "auto_vs_best"]
-        self.assertEqual(worst["value"], 1.25)  # (3 + 2) / (2 + 2)
+        self.assertEqual(worst["value"], 1.25)  # (2.75 + 1) / (2 + 1); (3 + 8) / (2 + 8) is less
         self.assertIn("runs", worst["case"])
         self.assertEqual(ratios.met(worst), False)
 
@@ -156,9 +159,8 @@ class Presentation(unittest.TestCase):
         sizes = [f"node_bytes:16/occupancy:16/nodes:{2 ** bits}" for bits in (10, 12)]
         cases = [benchmark(f"insert/storage:linked/{at(d, size)}", 1.0, of_ceiling=0.5, ceiling_ms=0.5)
                  for d in ("random", "coherent", "runs", "hot") for size in sizes]
-        cases += [benchmark(f"build_read/input:generated/storage:{storage}/{at('random', sizes[1])}", time_ms,
-                            build_ms=time_ms - 1, read_ms=1.0)
-                  for storage, time_ms in (("linked", 3.0), ("counted", 2.0))]
+        cases.append(benchmark(f"storage/{at('random')}", 5.0, linked_build_ms=2.0, linked_read_ms=1.0,
+                               counted_build_ms=1.0, counted_read_ms=1.0))
         self.results = results_of(output("cpu", *cases))
 
     def test_a_missed_goal_is_marked(self):

@@ -31,7 +31,7 @@ std::mutex mutex;  ///< of everything that follows
 std::optional<Plan> plan;
 int pauses = 0;
 std::uint64_t calls = 0;
-Fault first_fault;
+std::vector<Fault> failed;
 std::map<const void*, Object> objects;
 std::uint64_t too_many_releases = 0;
 
@@ -51,9 +51,8 @@ Verdict next_call(const char* name, cl_int resources, cl_int object) {
     const bool lost = plan->extent == Plan::Extent::lasting && calls > plan->call;
     if (calls != plan->call && calls != plan->again && !lost) return {};
     const cl_int code = plan->code == Plan::Code::resources ? resources : object;
-    const bool first = first_fault.call.empty();
-    if (first) first_fault = {name, code};
-    return {code, first};
+    failed.push_back({name, code});
+    return {code, failed.size() == 1};
 }
 
 void created(const void* handle, References::Kind kind) {
@@ -341,18 +340,17 @@ void arm(const Plan& chosen) {
     const std::lock_guard lock(mutex);
     plan = chosen;
     calls = 0;
-    first_fault = {};
+    failed.clear();
 }
 
-Fault disarm() {
+void disarm() {
     const std::lock_guard lock(mutex);
     plan.reset();
-    return first_fault;
 }
 
-bool failed() {
+std::vector<Fault> failures() {
     const std::lock_guard lock(mutex);
-    return !first_fault.call.empty();
+    return failed;
 }
 
 Pause::Pause() {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace cellist::faults {
 
@@ -21,18 +22,18 @@ struct Plan {
     enum class Code { resources, object } code = Code::resources;
 };
 
-/// The first call that failed.
+/// A call that failed.
 struct Fault {
-    std::string call;  ///< e.g. "clCreateBuffer"; empty if none failed
+    std::string call;  ///< e.g. "clCreateBuffer"
     int code = 0;      ///< e.g. CL_MEM_OBJECT_ALLOCATION_FAILURE
 };
 
 /// Makes calls fail until disarm().
 void arm(const Plan& plan);
-/// Lets all calls through again, and says which was the first to fail.
-Fault disarm();
-/// Whether a call has failed since arm().
-bool failed();
+/// Lets all calls through again.
+void disarm();
+/// The calls that have failed since arm().
+std::vector<Fault> failures();
 
 /// Lets calls of its scope through and does not count them: those of the test, not of the library.
 class Pause {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "chooser.hpp"
 #include "layer.hpp"
 #include "support/storages.hpp"
 
@@ -43,8 +44,9 @@ kernel void read(CELLIST_LISTS(Item, lists), global uint2* sums)
 
 Range range() { return Range::padded(insert_count, 32); }
 
-ListsOptions options_of(const Device& device, Storage storage, Room room, Overflow overflow) {
-    ListsOptions options{.storage = storage, .overflow = overflow};
+ListsOptions options_of(const Device& device, Storage storage, Room room, Overflow overflow,
+                        bool automatic = false) {
+    ListsOptions options{.storage = automatic ? Storage::automatic : storage, .overflow = overflow};
     if (overflow == Overflow::keep_nearest) {
         options.storage = Storage::fixed;
         options.nearest_by = "key";
@@ -174,6 +176,13 @@ void wait_for_events(Scene& scene) {
 
 void build(Scene& scene) { scene.build(); }
 
+void build_automatic(Scene& scene) {
+    scene.build();
+    for (const faults::Fault& fault : faults::failures())
+        scene.silent = fault.code == CL_MEM_OBJECT_ALLOCATION_FAILURE ||
+                       fault.code == CL_OUT_OF_RESOURCES || fault.code == CL_OUT_OF_HOST_MEMORY;
+}
+
 Pending<BuildReport> start_build(Scene& scene) {
     scene.lists_hold = Contents::empty;
     return scene.lists.build_async(scene.insert, range(), scene.cells, scene.records, insert_count);
@@ -212,7 +221,7 @@ void abandon_a_build(Scene& scene) {
     Lists<Item> lists(scene.device, {cell_count}, scene.options);
     const Pending<BuildReport> pending =
         lists.build_async(scene.insert, range(), scene.cells, scene.records, insert_count);
-    scene.silent = !faults::failed();
+    scene.silent = faults::failures().empty();
 }
 
 void build_both(Scene& scene) {
@@ -359,6 +368,8 @@ constexpr Operation table[] = {
     {"build later, drop and read", empty, build_later_and_read, repeated, Room::enough,
      Overflow::drop},
     {"abandon a build", full, abandon_a_build, repeated},
+    {"build in an automatic storage", empty, build_automatic, first, Room::enough, Overflow::grow,
+     1, true},
     {"build two containers", empty, build_both, repeated},
     {"build two containers that grow", empty, build_both, first, Room::too_little},
     {"build two containers later", empty, build_both_later, repeated},
@@ -432,7 +443,7 @@ constexpr Life table_of_lives[] = {
 
 Scene::Scene(const Device& on, Storage storage, const Operation& operation)
     : device(on),
-      options(options_of(on, storage, operation.room, operation.overflow)),
+      options(options_of(on, storage, operation.room, operation.overflow, operation.automatic)),
       inserts(items()),
       oracle(oracle_of(inserts, cell_count)),
       cells(on, inserts.cells),
@@ -442,6 +453,9 @@ Scene::Scene(const Device& on, Storage storage, const Operation& operation)
       insert(on, source, "insert", lists),
       insert_both(on, source, "insert_both", lists, other),
       read(on, source, "read", lists) {
+    if (operation.automatic)
+        while (lists.core().chooser()->storage() != storage)
+            lists.core().chooser()->measured({{1e-3, 1e-3}, oracle.size(), 10});
     if (operation.before == Contents::full) build();
     if (operation.use == Use::repeated) operation.run(*this);
 }

@@ -31,6 +31,8 @@ struct Operation {
     Room room = Room::enough;
     Overflow overflow = Overflow::grow;
     std::uint64_t step = 1;  ///< more where it takes long: each so many-th call fails
+    /// In Storage::automatic, whose next build tries the storage.
+    bool automatic = false;
 };
 std::span<const Operation> operations();
 
@@ -67,8 +69,9 @@ struct Scene {
     Contents lists_hold = Contents::empty;
     Contents other_holds = Contents::empty;
     bool uses_other = false;  ///< `other` has been touched
-    /// Whether a failure may end in no error: while a build throws OverflowError, which comes first, or
-    /// after the end of a build that nobody waited for.
+    /// Whether a failure may end in no error: while a build throws OverflowError, which comes first; in
+    /// the end of a build that nobody waited for; where an automatic storage finds no memory, and
+    /// another does.
     bool silent = false;
 };
 

@@ -1,0 +1,124 @@
+// A build and one read of all lists, in host time: what a user waits for, by storage.
+
+#include <deque>
+
+#include "support/containers.hpp"
+
+namespace bench {
+
+namespace {
+
+template <class Record>
+class BuildRead {
+public:
+    BuildRead(const Suite& suite, const Workload& workload, const Keeping& keeping,
+              Input input = Input::generated)
+        : device_(suite.device()),
+          workload_(workload),
+          containers_(suite, workload, keeping, input),
+          digests_(device_, workload.cells()),
+          read_(device_, source_of<Record>(kernels::read_cl, "read.cl"), "read",
+                containers_.next()) {}
+
+    /// Seconds for a build, and for a read.
+    std::pair<double, double> run() {
+        cellist::Lists<Record>& lists = containers_.next();
+        const double build = host_seconds(device_, [&] { containers_.build(lists); });
+        const double read =
+            host_seconds(device_, [&] { read_.run(workload_.cells(), lists, digests_); });
+        return {build, read};
+    }
+
+    /// Room for this many records is there for each that is stored.
+    [[nodiscard]] double nodes_a_record() {
+        return static_cast<double>(containers_.next().capacity_nodes()) / workload_.nodes;
+    }
+
+private:
+    const cellist::Device& device_;
+    Workload workload_;
+    Containers<Record> containers_;
+    cellist::Buffer<cl_uint> digests_;
+    cellist::Kernel read_;
+};
+
+template <class Record>
+Result build_read(const Suite& suite, const Workload& workload, const Keeping& keeping,
+                  Input input) {
+    BuildRead<Record> work(suite, workload, keeping, input);
+    const std::vector<Samples> samples = sample(suite.sampling(), [&]() -> std::vector<double> {
+        const auto [build, read] = work.run();
+        return {build + read, build, read};
+    });
+    return {samples[0],
+            double(workload.nodes),
+            0,
+            {{"build_ms", 1e3 * samples[1].median}, {"read_ms", 1e3 * samples[2].median}}};
+}
+
+/// All storages by turns, and those that the library chooses: so that what else the machine does
+/// falls on all of them. The time of the case is that of one round.
+Result compare_storages(const Suite& suite, const Workload& workload) {
+    std::vector<Keeping> keepings = storages();
+    keepings.insert(keepings.end(), automatic_storages().begin(), automatic_storages().end());
+    std::erase_if(keepings, [&](const Keeping& keeping) {
+        return !fits(suite.device().info(), workload, keeping);
+    });
+    std::deque<BuildRead<Record12>> works;
+    for (const Keeping& keeping : keepings) works.emplace_back(suite, workload, keeping);
+
+    const std::vector<Samples> samples = sample(suite.sampling(), [&] {
+        std::vector<double> seconds{0};
+        for (BuildRead<Record12>& work : works) {
+            const auto [build, read] = work.run();
+            seconds.insert(seconds.end(), {build, read});
+            seconds[0] += build + read;
+        }
+        return seconds;
+    });
+    Result result{samples[0], double(workload.nodes), 0};
+    for (std::size_t i = 0; i < works.size(); ++i) {
+        const std::string& storage = keepings[i].storage;
+        result.counters[storage + "_build_ms"] = 1e3 * samples[2 * i + 1].median;
+        result.counters[storage + "_read_ms"] = 1e3 * samples[2 * i + 2].median;
+        result.counters[storage + "_nodes_a_record"] = works[i].nodes_a_record();
+    }
+    return result;
+}
+
+/// The workloads that storages are compared on: 5 distributions by 5 occupancies, a quarter of the
+/// usual size, or so small that every list can be read by one work-item.
+std::vector<Workload> storage_grid(const Suite& suite) {
+    std::vector<cl_uint> occupancies{1, 4, 16, 64, 256};
+    if (suite.effort() == Effort::tiny) occupancies = {4};
+    std::vector<Workload> grid;
+    for (const Distribution& distribution : distributions) {
+        for (const cl_uint occupancy : occupancies) {
+            Workload workload = suite.base(distribution);
+            workload.occupancy = occupancy;
+            workload.nodes /= 4;
+            while (workload.longest() > readable_nodes) workload.nodes /= 2;
+            grid.push_back(workload);
+        }
+    }
+    return grid;
+}
+
+}  // namespace
+
+void add_storage(Suite& suite) {
+    const std::vector<Workload> bases{suite.base(random), suite.base(coherent), suite.base(runs)};
+    add_cases(suite, "build_read/input:generated", bases, storages(),
+              []<class Record>(const Suite& s, const Workload& workload, const Keeping& keeping) {
+                  return build_read<Record>(s, workload, keeping, Input::generated);
+              });
+    add_cases(suite, "build_read/input:stored", bases, storages(),
+              []<class Record>(const Suite& s, const Workload& workload, const Keeping& keeping) {
+                  return build_read<Record>(s, workload, keeping, Input::stored);
+              });
+    for (const Workload& workload : storage_grid(suite))
+        suite.add("storage/" + workload.name(),
+                  [&suite, workload] { return compare_storages(suite, workload); });
+}
+
+}  // namespace bench
