@@ -87,8 +87,8 @@ bool ListsCore::review(BuildReport& report) {
         bool replaced = false;
         try {
             replaced = replace(report, "left: the lists did not fit any more", false);
-        } catch (const OpenClError& failure) {
-            if (!out_of_memory(failure)) throw;
+        } catch (const OpenClError&) {
+            throw;
         } catch (const Error&) {
             // The others have no room either.
         }

@@ -39,11 +39,11 @@ public:
     /// Throws std::runtime_error where the lists are wrong.
     Containers(const Suite& suite, const Workload& workload, const Keeping& keeping,
                Input input = Input::generated)
-        : workload_(workload), options_(options_for(workload, keeping)) {
+        : workload_(workload), options_(options_for(workload, keeping)), inserts_(keeping.inserts) {
         const cellist::Device& device = suite.device();
         lists_.emplace_back(device, cellist::Shape{workload.cells()}, options_);
         insert_.emplace(device, source_of<Record>(kernels::insert_cl, "insert.cl"),
-                        input == Input::stored ? "insert_stored" : "insert", lists_.front());
+                        input == Input::stored ? "insert_stored" : keeping.kernel, lists_.front());
         if (input == Input::stored) store_input(device);
         const cellist::BuildReport report = settle(lists_.front());
         if (report.stored != workload.nodes)
@@ -92,9 +92,10 @@ private:
 
     cl::Event run_insert(cellist::Lists<Record>& lists) {
         if (stored_)
-            return insert_->run(workload_.nodes, lists, stored_->first, stored_->second,
-                                workload_.nodes);
-        return insert_->run(workload_.nodes, lists, workload_.distribution.id, workload_.nodes);
+            return insert_->run(cellist::Range::padded(workload_.nodes), lists, stored_->first,
+                                stored_->second, workload_.nodes);
+        return insert_->run(cellist::Range::padded((workload_.nodes + inserts_ - 1) / inserts_),
+                            lists, workload_.distribution.id, workload_.nodes);
     }
 
     /// The first build, and in Storage::automatic those of its trial: twelve at most.
@@ -125,6 +126,7 @@ private:
 
     Workload workload_;
     cellist::ListsOptions options_;
+    cl_uint inserts_;  ///< of each work-item
     std::deque<cellist::Lists<Record>> lists_;
     std::optional<cellist::Kernel> insert_;
     std::optional<std::pair<cellist::Buffer<cl_uint>, cellist::Buffer<Record>>> stored_;

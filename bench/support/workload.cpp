@@ -65,6 +65,12 @@ const std::vector<Keeping>& allocations() {
     static const std::vector<Keeping> all{
         {"linked", "sharded", {.allocation = cellist::Allocation::sharded}},
         {"linked", "global", {.allocation = cellist::Allocation::global}},
+        {"linked", "work_group", {}, "insert_all"},
+        {"linked",
+         "reserved_4",
+         {.allocation = cellist::Allocation::reserved},
+         "insert_reserved",
+         4},
     };
     return all;
 }

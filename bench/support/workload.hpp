@@ -52,6 +52,8 @@ struct Keeping {
     std::string storage;     ///< as benchmarks are named
     std::string allocation;  ///< the same; empty for what the options take by default
     cellist::ListsOptions options;
+    std::string kernel = "insert";  ///< in insert.cl
+    cl_uint inserts = 1;            ///< of each of its work-items
 
     [[nodiscard]] std::string name() const;
 };
@@ -61,7 +63,7 @@ struct Keeping {
 /// The storage that the library chooses itself, as automatic_1 and automatic_8 where it is told to expect
 /// one read or eight.
 [[nodiscard]] const std::vector<Keeping>& automatic_storages();
-/// Linked lists with each allocation, by its name.
+/// Linked lists with each way to get nodes, by its name.
 [[nodiscard]] const std::vector<Keeping>& allocations();
 
 /// Whether a device of this size has room for `copies` containers of a workload at once.
