@@ -96,8 +96,7 @@ static inline void cellist_sort_cell(CELLIST_LISTS(CELLIST_RECORD, lists), uint 
     if (length < 2) return;
     global struct CELLIST_RECORD* records =
         &cellist_get(lists, cellist_begin(lists_heads, lists_view, cell));
-    for (uint i = length / 2; i > 0; --i)
-        cellist_sort_sift(records, i - 1, length, records[i - 1]);
+    for (uint i = length / 2; i > 0; --i) cellist_sort_sift(records, i - 1, length, records[i - 1]);
     for (uint end = length - 1; end > 0; --end) {
         const struct CELLIST_RECORD last = records[end];
         records[end] = records[0];

@@ -14,7 +14,9 @@
 // Barriers stand in uniform control flow, and the range is padded to whole work-groups.
 
 static inline uint cellist_sort_class(uint length) {
-    return length <= 16 ? 0 : min(28u - clz(length - 1), CELLIST_SORT_LENGTHS - 1);
+    uint index = 0;
+    while (index < CELLIST_SORT_CLASSES - 1 && length > CELLIST_SORT_CLASS_MIN << index) ++index;
+    return index;
 }
 
 #define CELLIST_SORT_TEAMS (CELLIST_SORT_ITEMS / CELLIST_SORT_TEAM)
@@ -32,7 +34,7 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
     CELLIST_SORT_SHARED uchar order[CELLIST_SORT_LISTS * CELLIST_SORT_STRIDE];
     CELLIST_SORT_SHARED uint sums[CELLIST_SORT_LISTS];
 #if CELLIST_SORT_ITEMS > 1
-    local uint lengths_found[CELLIST_SORT_LENGTHS];
+    local uint in_class[CELLIST_SORT_CLASSES];
 #endif
     global cellist_sort_node* own_nodes = (global cellist_sort_node*)lists_nodes;
     const uint item = cellist_sort_item();
@@ -42,7 +44,7 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
 
     for (uint i = item; i < CELLIST_SORT_LISTS; i += CELLIST_SORT_ITEMS) sums[i] = 0;
 #if CELLIST_SORT_ITEMS > 1
-    for (uint i = item; i < CELLIST_SORT_LENGTHS; i += CELLIST_SORT_ITEMS) lengths_found[i] = 0;
+    for (uint i = item; i < CELLIST_SORT_CLASSES; i += CELLIST_SORT_ITEMS) in_class[i] = 0;
 #endif
 
 #if CELLIST_MODES == CELLIST_LINKED
@@ -127,7 +129,7 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
              at += CELLIST_SORT_TEAM * CELLIST_SORT_WIDTH)
             cellist_sort_add(&sums[list], cellist_sort_rank(keys + row, length, at, order + row));
 #if CELLIST_SORT_ITEMS > 1
-        if (member == 0 && length > 0) atomic_inc(&lengths_found[cellist_sort_class(length)]);
+        if (member == 0 && length > 0) atomic_inc(&in_class[cellist_sort_class(length)]);
 #endif
         cellist_sort_barrier();
         if (length > 0 && sums[list] != length * (length - 1) / 2)
@@ -161,7 +163,7 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
     }
 
 #if CELLIST_SORT_ITEMS > 1
-    for (uint i = item; i < CELLIST_SORT_LENGTHS; i += CELLIST_SORT_ITEMS)
-        if (lengths_found[i] > 0) atomic_add(&state->lengths[i], lengths_found[i]);
+    for (uint i = item; i < CELLIST_SORT_CLASSES; i += CELLIST_SORT_ITEMS)
+        if (in_class[i] > 0) atomic_add(&state->in_class[i], in_class[i]);
 #endif
 }

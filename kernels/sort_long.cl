@@ -127,8 +127,7 @@ kernel void cellist_sort_place(CELLIST_LISTS(CELLIST_RECORD, lists), global cons
     const uint chunks = (list.length + (CELLIST_SORT_SLOTS - 1)) / CELLIST_SORT_SLOTS;
     list.chunk = atomic_add(&state->chunks, chunks);
     if (list.length == 0 || list.length > lists_view.capacity_nodes ||
-        list.first > lists_view.capacity_nodes - list.length ||
-        list.chunk > owners_end - chunks) {
+        list.first > lists_view.capacity_nodes - list.length || list.chunk > owners_end - chunks) {
         atomic_inc(&state->broken);
         list.length = 0;
     } else {
@@ -273,8 +272,8 @@ kernel void cellist_sort_merge(global const cellist_sort_long* longs, global con
     if (item >= (ulong)chunks * per_chunk) return;
     const uint chunk = (uint)(item / per_chunk);
     const cellist_sort_long list = longs[owners[chunk]];
-    const uint begin = (chunk - list.chunk) * CELLIST_SORT_SLOTS +
-                       (uint)(item % per_chunk) * CELLIST_SORT_SHARE;
+    const uint begin =
+        (chunk - list.chunk) * CELLIST_SORT_SLOTS + (uint)(item % per_chunk) * CELLIST_SORT_SHARE;
     if (run >= list.length || begin >= list.length || begin % CELLIST_SORT_SHARE != 0) return;
     const uint end = min(list.length - begin, (uint)CELLIST_SORT_SHARE) + begin;
     from += list.first;

@@ -89,8 +89,12 @@ void ListsCore::settle() const {
     broken_ = false;
 }
 
-void ListsCore::add_to(Arguments& arguments) const {
+void ListsCore::settle_for_commands() const {
     if (!pending_ || pending_->may_change()) settle();
+}
+
+void ListsCore::add_to(Arguments& arguments) const {
+    settle_for_commands();
     storage_->add_to(arguments);
 }
 
@@ -131,11 +135,16 @@ void Arguments::add_lists(const ListsCore& lists) { lists.add_to(*this); }
 
 unsigned read_mode(const ListsCore& lists) { return lists.mode(); }
 
-cl::Event ListsCore::sort(const std::string& key, unsigned key_bits, Order order,
-                          std::uint32_t least) {
-    check_expression(key);
+cl::Event ListsCore::sort(const SortKey& key, std::uint32_t front) {
+    check_expression(key.expression);
     settle();
-    return sorter().sort(*storage_, {key, key_bits, order}, least);
+    return sorter().sort(*storage_, key, front);
+}
+
+cl::Event ListsCore::sort_async(const SortKey& key) {
+    check_expression(key.expression);
+    settle_for_commands();
+    return sorter().sort_in_place(*storage_, key);
 }
 
 ListSorter& ListsCore::sorter() {

@@ -114,7 +114,8 @@ typedef struct cellist_findings {
 } cellist_findings;
 
 // Classes of lists by their length: up to 16, 32, 64, 128, 256 nodes, and more.
-#define CELLIST_SORT_LENGTHS 6u
+#define CELLIST_SORT_CLASS_MIN 16u
+#define CELLIST_SORT_CLASSES 6u
 
 // What the kernels that sort find, from 0.
 typedef struct cellist_sort_state {
@@ -123,7 +124,7 @@ typedef struct cellist_sort_state {
     CELLIST_UINT longest;    // nodes of a long list
     CELLIST_UINT broken;     // lists with links that no build makes
     CELLIST_UINT longer[4];  // lists that were left by each class
-    CELLIST_UINT lengths[CELLIST_SORT_LENGTHS];  // sorted lists by class
+    CELLIST_UINT in_class[CELLIST_SORT_CLASSES];  // lists that were sorted in work-groups
 } cellist_sort_state;
 
 // Where a long list is sorted.

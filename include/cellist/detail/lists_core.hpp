@@ -24,6 +24,15 @@ class ListSorter;
 class ListStorage;
 struct Trial;
 
+/// What lists are sorted by.
+struct SortKey {
+    std::string expression;  ///< of `record`
+    unsigned bits;           ///< 32 or 64: what its values need
+    Order order;
+
+    friend auto operator<=>(const SortKey&, const SortKey&) = default;
+};
+
 /// Lists without the record's C++ type: a storage, and the kernels that read and sort any storage.
 /// The kernels see the record by its name in OpenCL C. Stays where it is: a build that is pending
 /// refers to it.
@@ -53,9 +62,9 @@ public:
                              const std::function<void(const Slice&)>& read);
 
     void clear();
-    /// Sorts by an expression of `record`, whose values have up to 32 or 64 bits; the first `least`
-    /// nodes of each list at least.
-    cl::Event sort(const std::string& key, unsigned key_bits, Order order, std::uint32_t least);
+    /// Sorts `front` nodes of each list at least.
+    cl::Event sort(const SortKey& key, std::uint32_t front);
+    cl::Event sort_async(const SortKey& key);
     /// Divides the work of sorts as on a device of this type; for tests.
     void sort_as_on(cl_device_type type);
     [[nodiscard]] std::function<Validation()> validate() const;
@@ -96,6 +105,8 @@ public:
     /// Ends a pending build, and empties lists that a failure has left in no order. Throws what the
     /// build throws, or what fails still.
     void settle() const;
+    /// The same where what is enqueued next would otherwise find incomplete lists.
+    void settle_for_commands() const;
 
     // For Build.
     [[nodiscard]] ListStorage& storage() const { return *storage_; }

@@ -1,7 +1,7 @@
 // Brings the first few records of every list to its front, in order; the others follow in any order. See
 // sort.cl. The whole list is visited.
 //
-//   least    records of each list that are brought to its front, at most CELLIST_SORT_LEAST
+//   wanted    records of each list that are brought to its front, at most CELLIST_SORT_FRONT
 //   longest  lists of more nodes are left as they are, and counted in state->longer[0]
 //
 // Links and offsets stay as they are, records move: those that come first to the first nodes of the list,
@@ -9,30 +9,31 @@
 
 // The nodes of a list whose records come first, in order, and its first nodes.
 typedef struct cellist_sort_front {
-    cellist_sort_bits keys[CELLIST_SORT_LEAST];
-    uint nodes[CELLIST_SORT_LEAST];
-    uint numbers[CELLIST_SORT_LEAST];  // in the list, from 0
-    uint places[CELLIST_SORT_LEAST];   // the first nodes
+    cellist_sort_bits keys[CELLIST_SORT_FRONT];
+    uint nodes[CELLIST_SORT_FRONT];
+    uint numbers[CELLIST_SORT_FRONT];  // in the list, from 0
+    uint places[CELLIST_SORT_FRONT];   // the first nodes
 } cellist_sort_front;
 
 // Looks at the next node of a list, the `number`-th.
-static inline void cellist_sort_take(CELLIST_LISTS(CELLIST_RECORD, lists), cellist_sort_front* front,
-                                     uint least, uint number, uint node) {
+static inline void cellist_sort_take(CELLIST_LISTS(CELLIST_RECORD, lists),
+                                     cellist_sort_front* front, uint wanted, uint number,
+                                     uint node) {
     const cellist_sort_bits key = cellist_sort_key(cellist_get(lists, node));
-    if (number < least) front->places[number] = node;
-    uint at = min(number, least);
+    if (number < wanted) front->places[number] = node;
+    uint at = min(number, wanted);
     for (; at > 0; --at) {
         if (key > front->keys[at - 1]) break;
         if (key == front->keys[at - 1] &&
             !cellist_record_before(cellist_get(lists, node),
                                    cellist_get(lists, front->nodes[at - 1]), 0))
             break;
-        if (at == least) continue;
+        if (at == wanted) continue;
         front->keys[at] = front->keys[at - 1];
         front->nodes[at] = front->nodes[at - 1];
         front->numbers[at] = front->numbers[at - 1];
     }
-    if (at == least) return;
+    if (at == wanted) return;
     front->keys[at] = key;
     front->nodes[at] = node;
     front->numbers[at] = number;
@@ -41,7 +42,7 @@ static inline void cellist_sort_take(CELLIST_LISTS(CELLIST_RECORD, lists), celli
 // Moves `count` records to the first nodes.
 static inline void cellist_sort_move(CELLIST_LISTS(CELLIST_RECORD, lists),
                                      const cellist_sort_front* front, uint count) {
-    struct CELLIST_RECORD records[CELLIST_SORT_LEAST];
+    struct CELLIST_RECORD records[CELLIST_SORT_FRONT];
     // Bit i: the record of the first nodes' i-th is among those that come first.
     ulong staying = 0;
     for (uint i = 0; i < count; ++i) {
@@ -57,8 +58,8 @@ static inline void cellist_sort_move(CELLIST_LISTS(CELLIST_RECORD, lists),
     for (uint i = 0; i < count; ++i) cellist_get(lists, front->places[i]) = records[i];
 }
 
-kernel void cellist_sort_least(CELLIST_LISTS(CELLIST_RECORD, lists), uint least, uint longest,
-                               volatile global cellist_sort_state* state) {
+kernel void cellist_sort_partial(CELLIST_LISTS(CELLIST_RECORD, lists), uint wanted, uint longest,
+                                 volatile global cellist_sort_state* state) {
     const ulong begin = (ulong)get_global_id(0) * CELLIST_SORT_LISTS;
     if (begin >= cellist_cells(lists)) return;
     const uint own = min(cellist_cells(lists) - (uint)begin, (uint)CELLIST_SORT_LISTS);
@@ -88,7 +89,7 @@ kernel void cellist_sort_least(CELLIST_LISTS(CELLIST_RECORD, lists), uint least,
 #else
             ++next[i];
 #endif
-            cellist_sort_take(CELLIST_PASS(lists), &fronts[i], least, step, node);
+            cellist_sort_take(CELLIST_PASS(lists), &fronts[i], wanted, step, node);
             lengths[i] = step + 1;
             more = 1;
         }
@@ -98,6 +99,6 @@ kernel void cellist_sort_least(CELLIST_LISTS(CELLIST_RECORD, lists), uint least,
         if (next[i] != ends[i] && next[i] < lists_view.capacity_nodes)
             atomic_inc(&state->longer[0]);
         else
-            cellist_sort_move(CELLIST_PASS(lists), &fronts[i], min(lengths[i], least));
+            cellist_sort_move(CELLIST_PASS(lists), &fronts[i], min(lengths[i], wanted));
     }
 }
