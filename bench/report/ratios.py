@@ -106,6 +106,13 @@ class _Run:
         else:
             self.add(name, distribution, None)
 
+    def in_order(self, name, distribution):
+        """Against the same stores and exchange in the order that an insert keeps."""
+        insert = self.insert(distribution)
+        if insert and "of_in_order" in insert:
+            self.add(name, f"{distribution}, in an insert's order", insert["of_in_order"], _described(insert),
+                     f"store, exchange, link {insert['in_order_ms']:.4g} ms", has_goal=False)
+
     def build_read(self, name, peers):
         """Against the best of the peers: with what a kernel computes, where the peers' input lies in
         memory already or is computed, whichever is faster; and with all input in memory."""
@@ -145,6 +152,9 @@ def compute(results):
     for distribution in ("random", "coherent"):
         run.of_ceiling("insert_vs_ceiling", distribution)
     run.of_ceiling("insert_vs_ceiling_runs", "runs")
+    for distribution in ("random", "coherent"):
+        run.in_order("insert_vs_ceiling", distribution)
+    run.in_order("insert_vs_ceiling_runs", "runs")
     for name, distribution in (("insert_vs_global_counter", "coherent"), ("insert_hot_vs_global_counter", "hot")):
         run.compare(name, distribution, run.insert(distribution), run.insert(distribution, "global"))
 
