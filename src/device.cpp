@@ -140,7 +140,7 @@ Device Device::choose(std::string_view selector) {
 Device::Device(const cl::Device& device) : state_(std::make_shared<detail::DeviceState>()) {
     detail::opencl([&] {
         state_->context = cl::Context(device);
-        state_->queue = cl::CommandQueue(state_->context, device, CL_QUEUE_PROFILING_ENABLE);
+        state_->queue = cl::CommandQueue(state_->context, device);
         state_->device = cl::Device(device);
         state_->info = describe(device);
     });
