@@ -216,14 +216,13 @@ CELLIST_SORT_KERNEL cellist_sort_chunks(global const cellist_sort_long* longs,
     for (uint i = item; i < length; i += CELLIST_SORT_ITEMS)
         keys[i] = cellist_sort_key(cellist_sort_record(nodes[first + i]));
     cellist_sort_barrier();
-    for (uint at = item * CELLIST_SORT_WIDTH; at < length;
-         at += CELLIST_SORT_ITEMS * CELLIST_SORT_WIDTH)
-        cellist_sort_add(&sum, cellist_sort_rank(keys, length, at, order));
+    uint places[CELLIST_SORT_RUNS * CELLIST_SORT_WIDTH];
+    cellist_sort_add(&sum, cellist_sort_rank(keys, length, item, places));
     cellist_sort_barrier();
-    if (length > 0 && sum != length * (length - 1) / 2)
-        for (uint at = item * CELLIST_SORT_WIDTH; at < length;
-             at += CELLIST_SORT_ITEMS * CELLIST_SORT_WIDTH)
-            cellist_sort_rank_equal(nodes, first, 0, keys, length, at, order);
+    if (cellist_sort_unique(sum, length))
+        cellist_sort_order(places, length, item, order);
+    else
+        cellist_sort_order_equal(nodes, first, 0, keys, length, item, order);
     cellist_sort_barrier();
     cellist_sort_node moved[CELLIST_SORT_SLOTS / CELLIST_SORT_ITEMS];
     for (uint i = 0;

@@ -286,6 +286,16 @@ Kernel::~Kernel() = default;
 const std::string& Kernel::name() const { return impl_->name; }
 
 cl::Event Kernel::enqueue(const Range& range, const Arguments& arguments) {
+    cl::Event event;
+    enqueue(range, arguments, &event);
+    return event;
+}
+
+void Kernel::enqueue_only(const Range& range, const Arguments& arguments) {
+    enqueue(range, arguments, nullptr);
+}
+
+void Kernel::enqueue(const Range& range, const Arguments& arguments, cl::Event* event) {
     Variant& variant =
         impl_->variant(arguments.modes() != 0 ? arguments.modes() : impl_->definitions.modes);
     const auto list = arguments.list();
@@ -300,19 +310,17 @@ cl::Event Kernel::enqueue(const Range& range, const Arguments& arguments) {
         opencl([&] { variant.kernel.setArg(i, list[i].size, data); });
     }
 
-    cl::Event event;
     opencl([&] {
         const cl::CommandQueue& queue = impl_->device->ordered_queue();
         const auto& extents = range.global;
         if (std::find(extents.begin(), extents.end(), 0u) != extents.end())
-            queue.enqueueMarkerWithWaitList(nullptr, &event);
+            queue.enqueueMarkerWithWaitList(nullptr, event);
         else
             queue.enqueueNDRangeKernel(
                 variant.kernel, cl::NullRange, nd_range(range.global, range.dimensions),
                 work_group(range, variant.required_work_group, variant.work_group_limit), nullptr,
-                &event);
+                event);
     });
-    return event;
 }
 
 }  // namespace cellist

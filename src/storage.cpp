@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cellist_kernels.hpp"
 #include "storages.hpp"
 
 namespace cellist::detail {
@@ -180,14 +181,24 @@ ListStorage::Counters ListStorage::sum(const Shards& shards) {
     return sum;
 }
 
-void ListStorage::clear_counters() {
-    constexpr cl_uint zero = 0;
-    shards_.fill(&zero, sizeof zero, shards_.size_bytes());
+void ListStorage::clear_heads_and_counters(cl_uint head, std::uint64_t first_word,
+                                           std::uint64_t words) {
+    if (!clear_)
+        clear_.emplace(device_,
+                       Source{.text = std::string(kernels::clear_cl), .file_name = "clear.cl"},
+                       "cellist_clear", Definitions{});
+    const std::uint64_t counter_words = shards_.size_bytes() / sizeof(cl_uint);
+    Arguments arguments;
+    arguments.add(heads_.cl());
+    arguments.add(cl_ulong{first_word});
+    arguments.add(cl_ulong{words});
+    arguments.add(head);
+    arguments.add(shards_.cl());
+    arguments.add(static_cast<cl_uint>(counter_words));
+    clear_->enqueue_only(Range::padded(std::max(words, counter_words)), arguments);
 }
 
 void ListStorage::fill_heads(cl_uint value, std::uint64_t first_word, std::uint64_t words) {
-    const std::uint64_t all = heads_.size_bytes() / sizeof value;
-    words = std::min(words, all - first_word);
     if (words == 0) return;
     const cl_int code =
         clEnqueueFillBuffer(device_->ordered_queue()(), heads_.cl()(), &value, sizeof value,

@@ -136,10 +136,10 @@ protected:
     /// Enqueues the reading of the counters: they are there when the event has completed.
     [[nodiscard]] cl::Event read_counters(Shards& shards) const;
     [[nodiscard]] static Counters sum(const Shards& shards);
-    void clear_counters();
-    /// Sets the heads from a word on. Does not block.
-    void fill_heads(cl_uint value, std::uint64_t first_word = 0,
-                    std::uint64_t words = ~std::uint64_t{0});
+    /// Sets words of the heads, and clears all counters. Does not block.
+    void clear_heads_and_counters(cl_uint head, std::uint64_t first_word, std::uint64_t words);
+    /// Sets words of the heads. Does not block.
+    void fill_heads(cl_uint value, std::uint64_t first_word, std::uint64_t words);
     /// A report of the counters.
     void update(BuildReport& report, const Counters& counters, std::uint64_t stored);
     /// Throws OverflowError if the policy or a limit forbids a pool of `demand` nodes.
@@ -179,6 +179,7 @@ protected:
     Memory nodes_;
     Memory shards_;
     std::optional<Spare> spare_;
+    std::optional<Kernel> clear_;
     Shards counters_;  ///< of the last pass
     Arrival reading_;  ///< what a review waits for: the last reading of the pass
 };

@@ -17,8 +17,7 @@ CountedStorage::CountedStorage(std::shared_ptr<DeviceState> device, const Defini
 }
 
 void CountedStorage::clear() {
-    fill_heads(0);
-    clear_counters();
+    clear_heads_and_counters(0, 0, counts_at() + shape_.cells());
     stored_ = 0;
 }
 
@@ -27,8 +26,7 @@ void CountedStorage::prepare_pass() {
         clear();
         mode_ = CELLIST_COUNTING;
     } else {
-        fill_heads(0, counts_at());
-        clear_counters();
+        clear_heads_and_counters(0, counts_at(), shape_.cells());
     }
 }
 

@@ -31,8 +31,7 @@ void FixedStorage::set_slots(std::uint64_t slots) {
 }
 
 void FixedStorage::clear() {
-    fill_heads(0);
-    clear_counters();
+    clear_heads_and_counters(0, 0, shape_.cells());
     stored_ = 0;
 }
 

@@ -25,8 +25,7 @@ LinkedStorage::LinkedStorage(std::shared_ptr<DeviceState> device, const Definiti
 }
 
 void LinkedStorage::clear() {
-    fill_heads(CELLIST_NONE);
-    clear_counters();
+    clear_heads_and_counters(CELLIST_NONE, 0, shape_.cells());
     stored_ = 0;
     unlinked_ = 0;
 }

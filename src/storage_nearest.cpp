@@ -37,8 +37,7 @@ NearestStorage::NearestStorage(std::shared_ptr<DeviceState> device, const Defini
 }
 
 void NearestStorage::clear() {
-    fill_heads(0, 0, shape_.cells());
-    clear_counters();
+    clear_heads_and_counters(0, 0, shape_.cells());
     stored_ = 0;
 }
 

@@ -64,6 +64,8 @@ public:
            const detail::Definitions& definitions);
     /// @private
     cl::Event enqueue(const Range& range, const detail::Arguments& arguments);
+    /// @private The same without an event, which takes less time.
+    void enqueue_only(const Range& range, const detail::Arguments& arguments);
 
 private:
     template <class... Uses>
@@ -72,6 +74,8 @@ private:
         (all.add(detail::definitions_used(uses)), ...);
         return all;
     }
+
+    void enqueue(const Range& range, const detail::Arguments& arguments, cl::Event* event);
 
     struct Impl;
     std::unique_ptr<Impl> impl_;

@@ -65,7 +65,12 @@ public:
     /// the lists are empty. Blocks until the report is there.
     template <class... Args>
     BuildReport build(Kernel& kernel, const Range& range, const Args&... args) {
-        return build([&] { kernel.run(range, *this, args...); });
+        return build([&] {
+            detail::Arguments arguments;
+            arguments.add(*this);
+            (arguments.add(args), ...);
+            kernel.enqueue_only(range, arguments);
+        });
     }
 
     /// The same for several inserting kernels: `insert` enqueues all of them with Kernel::run, and is
