@@ -99,7 +99,8 @@ TEST_CASE("the name of a file may have any characters") {
         const auto error = error_of<OpenClError>([&] { Kernel(device(), source, "broken"); });
         INFO(error.what());
         REQUIRE(contains(error.log(), "oops"));
-        Kernel(device(), Source{.text = "kernel void good(uint parameter) {}", .file_name = name}, "good");
+        Kernel(device(), Source{.text = "kernel void good(uint parameter) {}", .file_name = name},
+               "good");
     }
 }
 
