@@ -1,0 +1,150 @@
+// Every scalar type is a key, at the borders of its values: sorted lists are those of a stable sort on the
+// host, bit for bit, in every storage and order.
+#include <iostream>
+
+#include "support/extremes.hpp"
+#include "support/storages.hpp"
+
+namespace cellist::test {
+namespace {
+
+constexpr std::array<cl_uint, 15> lengths{0, 1, 2, 3, 15, 16, 17, 31, 32, 33, 65, 129, 257, 600, 0};
+
+/// The same records in every storage.
+template <class T>
+class Everywhere {
+public:
+    explicit Everywhere(std::mt19937& random) : inserts_(extreme_inserts<T>(lengths, random)) {
+        for (const Storage storage : all_storages) {
+            lists_.emplace_back(device(), Shape{lengths.size()}, ListsOptions{.storage = storage});
+            require_complete(Inserter(lists_.back()).build(lists_.back(), inserts_),
+                             inserts_.size());
+        }
+    }
+
+    /// Requires that a sort is one by `key`, a member or a function of the record.
+    void require_sorts(const auto& sort, auto key) {
+        for (const Order order : all_orders) {
+            const HostLists<T> expected = expect(key, order);
+            for (Lists<T>& lists : lists_) require_sorts_to(expected, lists, sort, order);
+        }
+    }
+
+    /// The same in one storage and one order, others than the last time.
+    void require_sorts_once(const auto& sort, auto key) {
+        const Order order = all_orders[turn_ / lists_.size() % 2];
+        require_sorts_to(expect(key, order), lists_[turn_ % lists_.size()], sort, order);
+        ++turn_;
+    }
+
+    /// Downloads that were compared.
+    [[nodiscard]] int count() const { return count_; }
+
+private:
+    [[nodiscard]] HostLists<T> expect(auto key, Order order) const {
+        return sorted_lists(inserts_, lengths.size(), before<T>(key, order));
+    }
+
+    void require_sorts_to(const HostLists<T>& expected, Lists<T>& lists, const auto& sort,
+                          Order order) {
+        INFO("by " << sort.name << ", " << name_of(order) << ", storage "
+                   << name_of(lists.storage()));
+        sort.call(lists, order);
+        require_sound(lists, inserts_.size());
+        REQUIRE(same_bits(lists.download(), expected));
+        REQUIRE(same_bits(lists.pack().records.download(), expected.records()));
+        ++count_;
+    }
+
+    Inserts<T> inserts_;
+    std::vector<Lists<T>> lists_;
+    std::size_t turn_ = 0;
+    int count_ = 0;
+};
+
+/// A way to sort, and what to call it.
+template <class Call>
+struct Sort {
+    const char* name;
+    Call call;  ///< (lists, order)
+};
+auto by_member(const char* name, auto member) {
+    return Sort{name, [member](auto& lists, Order order) { lists.sort(member, order); }};
+}
+auto by_expression(const char* expression) {
+    return Sort{expression,
+                [expression](auto& lists, Order order) { lists.sort_by(expression, order); }};
+}
+
+TEST_CASE("lists are sorted by keys at the borders of their types", "[extremes]") {
+    CELLIST_RANDOM(random, 80u);
+    Everywhere<Numbers> numbers(random);
+    const auto everywhere = [&](const char* name, auto member) {
+        numbers.require_sorts(by_member(name, member), member);
+    };
+    everywhere("ulong", &Numbers::ulong_value);
+    everywhere("long", &Numbers::long_value);
+    everywhere("float", &Numbers::float_value);
+    everywhere("uint", &Numbers::uint_value);
+    everywhere("int", &Numbers::int_value);
+    // What is shorter is an int to the comparison.
+    const auto once = [&](const char* name, auto member) {
+        numbers.require_sorts_once(by_member(name, member), member);
+    };
+    once("ushort", &Numbers::ushort_value);
+    once("short", &Numbers::short_value);
+    once("enum", &Numbers::level);
+    once("uchar", &Numbers::uchar_value);
+    once("char", &Numbers::char_value);
+    std::cout << "extremes: " << numbers.count() << " sorted downloads by keys of 10 types"
+              << std::endl;
+}
+
+TEST_CASE("lists are sorted by doubles at the borders of the type, where the device has them",
+          "[extremes]") {
+    CELLIST_RANDOM(random, 83u);
+    if (!device().info().fp64) {
+        REQUIRE_THROWS_AS(Lists<Wide>(device(), {2}).sort(&Wide::key), Error);
+        return;
+    }
+    Everywhere<Wide> doubles(random);
+    doubles.require_sorts(by_member("double", &Wide::key), &Wide::key);
+    // 2^53 + 1 is 2^53 in double.
+    doubles.require_sorts_once(by_expression("(double)record.id"), [](const Wide& record) {
+        return static_cast<cl_double>(record.id);
+    });
+    std::cout << "extremes: " << doubles.count() << " sorted downloads by doubles" << std::endl;
+}
+
+TEST_CASE("lists are sorted by expressions at the borders of their types", "[extremes]") {
+    CELLIST_RANDOM(random, 84u);
+    Everywhere<Numbers> numbers(random);
+    numbers.require_sorts(
+        by_expression("isnan(record.float_value) ? -INFINITY : record.float_value"),
+        [](const Numbers& record) {
+            return std::isnan(record.float_value) ? -std::numeric_limits<cl_float>::infinity()
+                                                  : record.float_value;
+        });
+    // 2^24 + 1 is 2^24 in float.
+    numbers.require_sorts_once(
+        by_expression("(float)record.uint_value"),
+        [](const Numbers& record) { return static_cast<cl_float>(record.uint_value); });
+    numbers.require_sorts_once(by_expression("-(long)record.int_value"), [](const Numbers& record) {
+        return -std::int64_t{record.int_value};
+    });
+    numbers.require_sorts_once(by_expression("record.ulong_value + 1"),
+                               [](const Numbers& record) { return record.ulong_value + 1; });
+    numbers.require_sorts_once(
+        by_expression("as_uint(record.float_value)"),
+        [](const Numbers& record) { return std::bit_cast<cl_uint>(record.float_value); });
+    numbers.require_sorts_once(by_expression("record.float_value < 0"), [](const Numbers& record) {
+        return record.float_value < 0 ? 1 : 0;
+    });
+    // Equal for all records: the members decide.
+    numbers.require_sorts_once(by_expression("NAN"), [](const Numbers&) { return 0; });
+    std::cout << "extremes: " << numbers.count() << " sorted downloads by 7 expressions"
+              << std::endl;
+}
+
+}  // namespace
+}  // namespace cellist::test
