@@ -10,6 +10,22 @@ namespace {
 
 constexpr std::array<cl_uint, 15> lengths{0, 1, 2, 3, 15, 16, 17, 31, 32, 33, 65, 129, 257, 600, 0};
 
+/// A way to sort lists, and what it is called.
+template <class T>
+struct Sort {
+    const char* name;
+    std::function<void(Lists<T>&, Order)> call;
+};
+template <class T, class M>
+Sort<T> by_member(const char* name, M T::*member) {
+    return {name, [member](Lists<T>& lists, Order order) { lists.sort(member, order); }};
+}
+template <class T>
+Sort<T> by_expression(const char* expression) {
+    return {expression,
+            [expression](Lists<T>& lists, Order order) { lists.sort_by(expression, order); }};
+}
+
 /// The same records in every storage.
 template <class T>
 class Everywhere {
@@ -23,7 +39,7 @@ public:
     }
 
     /// Requires that a sort is one by `key`, a member or a function of the record.
-    void require_sorts(const auto& sort, auto key) {
+    void require_sorts(const Sort<T>& sort, auto key) {
         for (const Order order : all_orders) {
             const HostLists<T> expected = expect(key, order);
             for (Lists<T>& lists : lists_) require_sorts_to(expected, lists, sort, order);
@@ -31,7 +47,7 @@ public:
     }
 
     /// The same in one storage and one order, others than the last time.
-    void require_sorts_once(const auto& sort, auto key) {
+    void require_sorts_once(const Sort<T>& sort, auto key) {
         const Order order = all_orders[turn_ / lists_.size() % 2];
         require_sorts_to(expect(key, order), lists_[turn_ % lists_.size()], sort, order);
         ++turn_;
@@ -45,7 +61,7 @@ private:
         return sorted_lists(inserts_, lengths.size(), before<T>(key, order));
     }
 
-    void require_sorts_to(const HostLists<T>& expected, Lists<T>& lists, const auto& sort,
+    void require_sorts_to(const HostLists<T>& expected, Lists<T>& lists, const Sort<T>& sort,
                           Order order) {
         INFO("by " << sort.name << ", " << name_of(order) << ", storage "
                    << name_of(lists.storage()));
@@ -61,20 +77,6 @@ private:
     std::size_t turn_ = 0;
     int count_ = 0;
 };
-
-/// A way to sort, and what to call it.
-template <class Call>
-struct Sort {
-    const char* name;
-    Call call;  ///< (lists, order)
-};
-auto by_member(const char* name, auto member) {
-    return Sort{name, [member](auto& lists, Order order) { lists.sort(member, order); }};
-}
-auto by_expression(const char* expression) {
-    return Sort{expression,
-                [expression](auto& lists, Order order) { lists.sort_by(expression, order); }};
-}
 
 TEST_CASE("lists are sorted by keys at the borders of their types", "[extremes]") {
     CELLIST_RANDOM(random, 80u);
@@ -110,7 +112,7 @@ TEST_CASE("lists are sorted by doubles at the borders of the type, where the dev
     Everywhere<Wide> doubles(random);
     doubles.require_sorts(by_member("double", &Wide::key), &Wide::key);
     // 2^53 + 1 is 2^53 in double.
-    doubles.require_sorts_once(by_expression("(double)record.id"), [](const Wide& record) {
+    doubles.require_sorts_once(by_expression<Wide>("(double)record.id"), [](const Wide& record) {
         return static_cast<cl_double>(record.id);
     });
     std::cout << "extremes: " << doubles.count() << " sorted downloads by doubles" << std::endl;
@@ -120,28 +122,28 @@ TEST_CASE("lists are sorted by expressions at the borders of their types", "[ext
     CELLIST_RANDOM(random, 84u);
     Everywhere<Numbers> numbers(random);
     numbers.require_sorts(
-        by_expression("isnan(record.float_value) ? -INFINITY : record.float_value"),
+        by_expression<Numbers>("isnan(record.float_value) ? -INFINITY : record.float_value"),
         [](const Numbers& record) {
             return std::isnan(record.float_value) ? -std::numeric_limits<cl_float>::infinity()
                                                   : record.float_value;
         });
     // 2^24 + 1 is 2^24 in float.
     numbers.require_sorts_once(
-        by_expression("(float)record.uint_value"),
+        by_expression<Numbers>("(float)record.uint_value"),
         [](const Numbers& record) { return static_cast<cl_float>(record.uint_value); });
-    numbers.require_sorts_once(by_expression("-(long)record.int_value"), [](const Numbers& record) {
-        return -std::int64_t{record.int_value};
-    });
-    numbers.require_sorts_once(by_expression("record.ulong_value + 1"),
+    numbers.require_sorts_once(
+        by_expression<Numbers>("-(long)record.int_value"),
+        [](const Numbers& record) { return -std::int64_t{record.int_value}; });
+    numbers.require_sorts_once(by_expression<Numbers>("record.ulong_value + 1"),
                                [](const Numbers& record) { return record.ulong_value + 1; });
     numbers.require_sorts_once(
-        by_expression("as_uint(record.float_value)"),
+        by_expression<Numbers>("as_uint(record.float_value)"),
         [](const Numbers& record) { return std::bit_cast<cl_uint>(record.float_value); });
-    numbers.require_sorts_once(by_expression("record.float_value < 0"), [](const Numbers& record) {
-        return record.float_value < 0 ? 1 : 0;
-    });
+    numbers.require_sorts_once(
+        by_expression<Numbers>("record.float_value < 0"),
+        [](const Numbers& record) { return record.float_value < 0 ? 1 : 0; });
     // Equal for all records: the members decide.
-    numbers.require_sorts_once(by_expression("NAN"), [](const Numbers&) { return 0; });
+    numbers.require_sorts_once(by_expression<Numbers>("NAN"), [](const Numbers&) { return 0; });
     std::cout << "extremes: " << numbers.count() << " sorted downloads by 7 expressions"
               << std::endl;
 }
