@@ -1,167 +1,124 @@
-// Sorts every list by cellist_sort_key(record), then by the members of the record in order. Any
-// length, in place.
+// What the kernels that sort have in common: how nodes lie in memory, and ranking a few of them.
 //
-// Linked lists are relinked; the records stay where they are. Lists of up to CELLIST_SORT_SHORT
-// nodes: insertion sort of (key, node) pairs in private memory, while walking the list; then one pass
-// that writes the links. Longer lists: bottom-up merge sort of the list itself. pending[i] is a sorted
-// list of 2^i nodes or none, and taking a node in works like adding one to a binary number, each carry
-// merging two lists of equal size.
+// The order is that of cellist_sort_key(record), then that of the record's scalars. The host defines
 //
-// Lists in one piece: insertion sort with the keys in private memory up to CELLIST_SORT_SHORT records,
-// heap sort beyond.
+//   CELLIST_SORT_KEY_BITS   32 or 64, what the key needs
+//   CELLIST_SORT_SLOTS      records that are ranked together, a power of two up to 256
+//   CELLIST_SORT_WIDTH      records that a work-item ranks at once: 4, 8 or 16, at most the slots
+//   CELLIST_SORT_ITEMS      work-items that sort together, a power of two. More than one are a
+//                           work-group and share local memory (GPUs); one needs neither (CPUs)
 //
-// One work-item a cell; the range is padded to whole work-groups. The host defines
-// cellist_sort_key(CELLIST_RECORD), which maps the key to an unsigned integer of the same order.
+// and behind this file cellist_sort_key, which maps the key to an unsigned integer of the same order.
+//
+// The rank of a record is the number of records that come before it. Ranking compares all with all: for
+// up to some hundred records this is faster than sorts with fewer comparisons, because it does not
+// branch on what it finds, and reads one key for CELLIST_SORT_WIDTH comparisons.
 #include <cellist/lists.clh>
 
-// Longest list that is sorted in private memory.
-#ifndef CELLIST_SORT_SHORT
-#define CELLIST_SORT_SHORT 32
+#define CELLIST_SORT_PASTED(a, b) a##b
+#define CELLIST_SORT_PASTE(a, b) CELLIST_SORT_PASTED(a, b)
+#if CELLIST_SORT_KEY_BITS == 32
+typedef uint cellist_sort_bits;
+typedef CELLIST_SORT_PASTE(uint, CELLIST_SORT_WIDTH) cellist_sort_keys;
+typedef int cellist_sort_count;
+typedef CELLIST_SORT_PASTE(int, CELLIST_SORT_WIDTH) cellist_sort_counts;
+#else
+typedef ulong cellist_sort_bits;
+typedef CELLIST_SORT_PASTE(ulong, CELLIST_SORT_WIDTH) cellist_sort_keys;
+typedef long cellist_sort_count;
+typedef CELLIST_SORT_PASTE(long, CELLIST_SORT_WIDTH) cellist_sort_counts;
 #endif
 
-// Whether node a, with key x, comes before node b, with key y.
-static inline int cellist_sort_before(CELLIST_LISTS(CELLIST_RECORD, lists), uint a, ulong x, uint b,
-                                      ulong y) {
-    if (x != y) return x < y;
-    return cellist_record_before(cellist_get(lists, a), cellist_get(lists, b), 0);
+#if CELLIST_SORT_ITEMS > 1
+#define CELLIST_SORT_KERNEL                                                                        \
+    kernel __attribute__((reqd_work_group_size(CELLIST_SORT_ITEMS, 1, 1))) void
+#define CELLIST_SORT_SHARED local
+#define cellist_sort_item() ((uint)get_local_id(0))
+#define cellist_sort_barrier() barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE)
+// Neighbouring lists begin in different banks of local memory.
+#define CELLIST_SORT_STRIDE (CELLIST_SORT_SLOTS + 1)
+static inline uint cellist_sort_add(local uint* sum, uint value) { return atomic_add(sum, value); }
+#else
+#define CELLIST_SORT_KERNEL kernel void
+#define CELLIST_SORT_SHARED
+#define cellist_sort_item() 0u
+#define cellist_sort_barrier()
+#define CELLIST_SORT_STRIDE CELLIST_SORT_SLOTS
+static inline uint cellist_sort_add(uint* sum, uint value) {
+    *sum += value;
+    return *sum - value;
+}
+#endif
+
+// A node as it lies in a pool.
+typedef struct cellist_sort_node {
+#if CELLIST_MODES == CELLIST_LINKED
+    CELLIST_SORT_PASTE(cellist_node_, CELLIST_RECORD) stored;
+} cellist_sort_node;
+#define cellist_sort_record(node) ((node).stored.record)
+#else
+    struct CELLIST_RECORD stored;
+} cellist_sort_node;
+#define cellist_sort_record(node) ((node).stored)
+#endif
+
+// Writes a node to its place in a list that lies in one piece; `last` is the place of the last node.
+static inline void cellist_sort_store(global cellist_sort_node* nodes, uint at, uint last,
+                                      cellist_sort_node node) {
+#if CELLIST_MODES == CELLIST_LINKED
+    node.stored.next = at < last ? at + 1 : CELLIST_NONE;
+#endif
+    nodes[at] = node;
 }
 
-// Sorts the list of a cell if it is short; returns 0 and changes nothing if it is not.
-static inline int cellist_sort_short(CELLIST_LISTS(CELLIST_RECORD, lists), uint cell) {
-    ulong keys[CELLIST_SORT_SHORT];
-    uint nodes[CELLIST_SORT_SHORT];
-    uint length = 0;
-    cellist_for_each(lists, cell, node) {
-        if (length == CELLIST_SORT_SHORT) return 0;
-        const ulong key = cellist_sort_key(cellist_get(lists, node));
-        uint at = length++;
-        for (; at > 0; --at) {
-            if (!cellist_sort_before(CELLIST_PASS(lists), node, key, nodes[at - 1], keys[at - 1]))
-                break;
-            keys[at] = keys[at - 1];
-            nodes[at] = nodes[at - 1];
+#if CELLIST_MODES != CELLIST_LINKED
+// Nodes of a list; none where the offsets are impossible.
+static inline uint cellist_sort_length(volatile global uint* heads, const cellist_view view,
+                                       uint cell) {
+    const uint begin = cellist_begin(heads, view, cell);
+    const uint end = cellist_end(heads, view, cell);
+    return begin <= end && end <= view.capacity_nodes ? end - begin : 0;
+}
+#endif
+
+// Finds the places of CELLIST_SORT_WIDTH of `length` records by their keys, from record `at` on:
+// order[place] is the record. Returns the sum of the places. The sums over all records add up to
+// length * (length - 1) / 2, or to less if keys are equal; cellist_sort_rank_equal is right then, too.
+static inline uint cellist_sort_rank(CELLIST_SORT_SHARED const cellist_sort_bits* keys, uint length,
+                                     uint at, CELLIST_SORT_SHARED uchar* order) {
+    const cellist_sort_keys own = CELLIST_SORT_PASTE(vload, CELLIST_SORT_WIDTH)(0, keys + at);
+    cellist_sort_counts before = 0;
+    // A comparison that holds is -1.
+    for (uint i = 0; i < length; ++i) before -= (cellist_sort_keys)keys[i] < own;
+    cellist_sort_count places[CELLIST_SORT_WIDTH];
+    CELLIST_SORT_PASTE(vstore, CELLIST_SORT_WIDTH)(before, 0, places);
+    uint sum = 0;
+    for (uint i = 0; i < CELLIST_SORT_WIDTH && at + i < length; ++i) {
+        order[places[i]] = (uchar)(at + i);
+        sum += (uint)places[i];
+    }
+    return sum;
+}
+
+// The same where keys may be equal: records with equal keys come in the order of records, and equal
+// records stay in theirs. Record i is nodes[first + index[i]], or nodes[first + i] without an index.
+static void cellist_sort_rank_equal(global const cellist_sort_node* nodes, uint first,
+                                    CELLIST_SORT_SHARED const uint* index,
+                                    CELLIST_SORT_SHARED const cellist_sort_bits* keys, uint length,
+                                    uint at, CELLIST_SORT_SHARED uchar* order) {
+    for (uint i = at; i < at + CELLIST_SORT_WIDTH && i < length; ++i) {
+        const cellist_sort_bits key = keys[i];
+        const struct CELLIST_RECORD own =
+            cellist_sort_record(nodes[first + (index ? index[i] : i)]);
+        uint place = 0;
+        for (uint j = 0; j < length; ++j) {
+            place += keys[j] < key;
+            if (keys[j] != key || j == i) continue;
+            const struct CELLIST_RECORD other =
+                cellist_sort_record(nodes[first + (index ? index[j] : j)]);
+            place += cellist_record_before(other, own, 0) ||
+                     (j < i && !cellist_record_before(own, other, 0));
         }
-        keys[at] = key;
-        nodes[at] = node;
+        order[place] = (uchar)i;
     }
-    if (length < 2) return 1;
-    lists_heads[cell] = nodes[0];
-    for (uint i = 1; i < length; ++i) lists_nodes[nodes[i - 1]].next = nodes[i];
-    lists_nodes[nodes[length - 1]].next = CELLIST_NONE;
-    return 1;
-}
-
-static inline uint cellist_sort_merge(CELLIST_LISTS(CELLIST_RECORD, lists), uint a, uint b) {
-    uint first = CELLIST_NONE;
-    uint last = CELLIST_NONE;
-    ulong x = cellist_sort_key(cellist_get(lists, a));
-    ulong y = cellist_sort_key(cellist_get(lists, b));
-    for (uint step = 0; step < lists_view.capacity_nodes; ++step) {
-        const int b_first = cellist_sort_before(CELLIST_PASS(lists), b, y, a, x);
-        const uint least = b_first ? b : a;
-        if (last == CELLIST_NONE)
-            first = least;
-        else
-            lists_nodes[last].next = least;
-        last = least;
-
-        const uint next = lists_nodes[least].next;
-        if (next == CELLIST_NONE) break;
-        if (b_first)
-            b = next, y = cellist_sort_key(cellist_get(lists, b));
-        else
-            a = next, x = cellist_sort_key(cellist_get(lists, a));
-    }
-    // One list has ended with `last`; the rest of the other follows.
-    lists_nodes[last].next = last == b ? a : b;
-    return first;
-}
-
-static inline void cellist_sort_long(CELLIST_LISTS(CELLIST_RECORD, lists), uint cell) {
-    uint pending[32];
-    uint used = 0;
-    uint node = lists_heads[cell];
-    for (uint taken = 0; node != CELLIST_NONE && taken < lists_view.capacity_nodes; ++taken) {
-        const uint next = lists_nodes[node].next;
-        lists_nodes[node].next = CELLIST_NONE;
-        uint level = 0;
-        for (; level < used && pending[level] != CELLIST_NONE; ++level) {
-            node = cellist_sort_merge(CELLIST_PASS(lists), pending[level], node);
-            pending[level] = CELLIST_NONE;
-        }
-        if (level == used) ++used;
-        pending[level] = node;
-        node = next;
-    }
-
-    uint sorted = CELLIST_NONE;
-    for (uint level = 0; level < used; ++level) {
-        if (pending[level] == CELLIST_NONE) continue;
-        sorted = sorted == CELLIST_NONE
-                     ? pending[level]
-                     : cellist_sort_merge(CELLIST_PASS(lists), pending[level], sorted);
-    }
-    lists_heads[cell] = sorted;
-}
-
-static inline int cellist_record_order(struct CELLIST_RECORD a, struct CELLIST_RECORD b) {
-    const ulong x = cellist_sort_key(a);
-    const ulong y = cellist_sort_key(b);
-    return x != y ? x < y : cellist_record_before(a, b, 0);
-}
-
-static inline void cellist_sort_short_piece(global struct CELLIST_RECORD* records, uint length) {
-    ulong keys[CELLIST_SORT_SHORT];
-    for (uint i = 0; i < length; ++i) {
-        const struct CELLIST_RECORD record = records[i];
-        const ulong key = cellist_sort_key(record);
-        uint at = i;
-        for (; at > 0; --at) {
-            if (keys[at - 1] < key) break;
-            if (keys[at - 1] == key && !cellist_record_before(record, records[at - 1], 0)) break;
-            keys[at] = keys[at - 1];
-            records[at] = records[at - 1];
-        }
-        keys[at] = key;
-        if (at != i) records[at] = record;
-    }
-}
-
-// Lets `record` sink from position `at` in the heap of `length` records: the last comes first.
-static inline void cellist_sift(global struct CELLIST_RECORD* records, uint at, uint length,
-                                struct CELLIST_RECORD record) {
-    while (at < length / 2) {
-        uint child = 2 * at + 1;
-        if (child + 1 < length && cellist_record_order(records[child], records[child + 1])) ++child;
-        if (!cellist_record_order(record, records[child])) break;
-        records[at] = records[child];
-        at = child;
-    }
-    records[at] = record;
-}
-
-static inline void cellist_sort_long_piece(global struct CELLIST_RECORD* records, uint length) {
-    for (uint i = length / 2; i > 0; --i) cellist_sift(records, i - 1, length, records[i - 1]);
-    for (uint end = length - 1; end > 0; --end) {
-        const struct CELLIST_RECORD last = records[end];
-        records[end] = records[0];
-        cellist_sift(records, 0, end, last);
-    }
-}
-
-kernel void cellist_sort(CELLIST_LISTS(CELLIST_RECORD, lists)) {
-    const uint cell = get_global_id(0);
-    if (cell >= cellist_cells(lists)) return;
-    if (cellist_has_mode(lists_view, CELLIST_LINKED)) {
-        if (!cellist_sort_short(CELLIST_PASS(lists), cell))
-            cellist_sort_long(CELLIST_PASS(lists), cell);
-        return;
-    }
-    const uint begin = cellist_begin(lists_heads, lists_view, cell);
-    const uint length = cellist_end(lists_heads, lists_view, cell) - begin;
-    global struct CELLIST_RECORD* records = (global struct CELLIST_RECORD*)lists_nodes + begin;
-    if (length <= CELLIST_SORT_SHORT)
-        cellist_sort_short_piece(records, length);
-    else
-        cellist_sort_long_piece(records, length);
 }

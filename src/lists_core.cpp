@@ -8,6 +8,7 @@
 #include "cellist_kernels.hpp"
 #include "chooser.hpp"
 #include "expression.hpp"
+#include "sort.hpp"
 #include "storages.hpp"
 
 namespace cellist::detail {
@@ -88,8 +89,12 @@ void ListsCore::settle() const {
     broken_ = false;
 }
 
-void ListsCore::add_to(Arguments& arguments) const {
+void ListsCore::settle_for_commands() const {
     if (!pending_ || pending_->may_change()) settle();
+}
+
+void ListsCore::add_to(Arguments& arguments) const {
+    settle_for_commands();
     storage_->add_to(arguments);
 }
 
@@ -130,23 +135,24 @@ void Arguments::add_lists(const ListsCore& lists) { lists.add_to(*this); }
 
 unsigned read_mode(const ListsCore& lists) { return lists.mode(); }
 
-cl::Event ListsCore::sort(const std::string& key, Order order) {
-    check_expression(key);
-    // Where clang knows that a value is undefined, it is an error: the sort around it would be undefined
-    // as well.
-    const std::string key_function =
-        std::string(
-            "#ifdef __clang__\n#pragma clang diagnostic push\n"
-            "#pragma clang diagnostic error \"-Wdivision-by-zero\"\n"
-            "#pragma clang diagnostic error \"-Warray-bounds\"\n#endif\n"
-            "#line 1 \"sort expression\"\n"
-            "static inline ulong cellist_sort_key(struct CELLIST_RECORD record) { return ") +
-        (order == Order::descending ? "~" : "") + "cellist_order(\n#line 1 \"sort expression\"\n" +
-        key + "\n); }\n#ifdef __clang__\n#pragma clang diagnostic pop\n#endif\n";
-    Arguments arguments;
-    add_to(arguments);
-    return kernel("cellist_sort", kernels::sort_cl, key_function).enqueue(cell_range(), arguments);
+cl::Event ListsCore::sort(const SortKey& key, std::uint32_t front) {
+    check_expression(key.expression);
+    settle();
+    return sorter().sort(*storage_, key, front);
 }
+
+cl::Event ListsCore::sort_async(const SortKey& key) {
+    check_expression(key.expression);
+    settle_for_commands();
+    return sorter().sort_in_place(*storage_, key);
+}
+
+ListSorter& ListsCore::sorter() {
+    if (!sorter_) sorter_ = std::make_unique<ListSorter>(device_, definitions_);
+    return *sorter_;
+}
+
+void ListsCore::sort_as_on(cl_device_type type) { sorter().set_device_type(type); }
 
 /// The length of every list, in words of a device buffer that start at `at`.
 Memory ListsCore::device_lengths(std::uint64_t at) const {

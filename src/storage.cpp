@@ -83,6 +83,36 @@ std::uint64_t ListStorage::bytes_with(std::uint64_t capacity_nodes) const {
     return heads_.size_bytes() + capacity_nodes * node_bytes_ + shards * sizeof(cellist_shard);
 }
 
+std::uint64_t ListStorage::bytes() const {
+    return bytes_with(capacity_nodes_) +
+           (spare_ ? spare_->nodes.size_bytes() + spare_->heads.size_bytes() : 0);
+}
+
+const ListStorage::Spare* ListStorage::spare() {
+    if (spare_) return &*spare_;
+    const std::uint64_t heads = mode_ == CELLIST_LINKED ? shape_.cells() : 0;
+    const std::uint64_t all = bytes() + nodes_.size_bytes() + heads * sizeof(cl_uint);
+    if (all > options_.budget_bytes || all > device_->info.global_memory_bytes) return nullptr;
+    try {
+        Spare made{Memory(device_, capacity_nodes_, node_bytes_, "second pool"),
+                   Memory(device_, heads, sizeof(cl_uint), "second head buffer")};
+        // Some drivers find out only at the first use whether they have the memory.
+        constexpr cl_uchar zero = 0;
+        for (Memory* memory : {&made.nodes, &made.heads})
+            memory->fill(&zero, sizeof zero, std::min<std::uint64_t>(memory->size_bytes(), 1));
+        spare_ = std::move(made);
+    } catch (const OpenClError& error) {
+        if (!out_of_memory(error)) throw;
+        return nullptr;
+    }
+    return &*spare_;
+}
+
+void ListStorage::exchange_spare() noexcept {
+    std::swap(nodes_, spare_->nodes);
+    std::swap(heads_, spare_->heads);
+}
+
 std::optional<std::string> ListStorage::refusal(std::uint64_t capacity_nodes) const {
     const std::uint64_t allocation = device_->info.max_allocation_bytes;
     const std::uint64_t limit =
@@ -124,6 +154,7 @@ void ListStorage::allocate_pool(std::uint64_t capacity_nodes) {
     // The old nodes go first, so that the device never holds both pools.
     capacity_nodes_ = 0;
     nodes_ = Memory();
+    spare_.reset();
     const cl_uint bits = shard_bits_for(capacity_nodes, options_.allocation);
     shards_ = Memory(device_, (std::uint64_t{1} << bits) + 1, sizeof(cellist_shard), "counters");
     shard_bits_ = bits;
@@ -217,6 +248,7 @@ void ListStorage::release_pool() noexcept {
     if (!released_nodes_) released_nodes_ = capacity_nodes_;
     capacity_nodes_ = 0;
     nodes_ = Memory();
+    spare_.reset();
 }
 
 void ListStorage::recover(bool without_pool) {

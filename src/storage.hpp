@@ -79,7 +79,20 @@ public:
 
     [[nodiscard]] std::uint64_t capacity_nodes() const { return capacity_nodes_; }
     /// Device memory of all buffers.
-    [[nodiscard]] std::uint64_t bytes() const { return bytes_with(capacity_nodes_); }
+    [[nodiscard]] std::uint64_t bytes() const;
+    [[nodiscard]] std::uint64_t cells() const { return shape_.cells(); }
+    [[nodiscard]] const cl::Buffer& nodes() const { return nodes_.cl(); }
+
+    /// Memory for as many nodes as the pool has, and for their heads where lists are linked.
+    struct Spare {
+        Memory nodes;
+        Memory heads;
+    };
+    /// Makes it the first time, and keeps it as long as the pool. Null where the budget or the device
+    /// has no room for it.
+    [[nodiscard]] const Spare* spare();
+    /// The spare nodes and heads take the place of the pool's, of linked lists, and these become spare.
+    void exchange_spare() noexcept;
     /// The mode in which the lists are read.
     [[nodiscard]] cl_uint mode() const { return mode_; }
     /// Records in the lists.
@@ -165,6 +178,7 @@ protected:
     Memory heads_;
     Memory nodes_;
     Memory shards_;
+    std::optional<Spare> spare_;
     Shards counters_;  ///< of the last pass
     Arrival reading_;  ///< what a review waits for: the last reading of the pass
 };

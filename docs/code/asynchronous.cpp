@@ -30,7 +30,7 @@ int main() {
 
     keys.upload_async(host);  // host must stay as it is until the upload is done
     cellist::Pending<cellist::BuildReport> built = samples.build_async(sample, 50'000, keys);
-    samples.sort(&Sample::key);
+    samples.sort_async(&Sample::key);
     cellist::Pending<cellist::Lengths> lengths = samples.lengths_async();
     // ... work of the host ...
     std::cout << built.get().dropped << " dropped, longest list " << lengths.get().longest << '\n';

@@ -5,6 +5,7 @@
 #include <concepts>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -111,22 +112,49 @@ public:
 
     /// Sorts every list by a scalar member: cellist_for_each then visits the least first, or the
     /// greatest. Records with equal keys are ordered by their remaining members, ascending, in order
-    /// of declaration, so
-    /// the result depends on the records alone and not on the order of insertion. Floats are ordered
-    /// -inf < ... < -0 < +0 < ... < +inf < NaN. Lists have any length. The
-    /// first call for a member compiles a kernel; does not block otherwise.
+    /// of declaration, so the result depends on the records alone and not on the order of insertion.
+    /// Floats are ordered -inf < ... < -0 < +0 < ... < +inf < NaN. Lists have any length.
+    ///
+    /// Linked lists move to a second pool, each in one piece; it is counted in pool_bytes() and kept for
+    /// the next sort. Lists of some hundred nodes or more need a second pool in the other storages as
+    /// well. Where the budget or the device has no memory for it, lists are sorted as by sort_async().
+    ///
+    /// Blocks until it is known how long the lists are. The first calls for a member compile kernels.
+    /// Throws Error if links lead in circles; whatever fails, the lists hold what they held.
     template <class M>
     cl::Event sort(M T::*member, Order order = Order::ascending) {
-        return core_->sort("record." + detail::member_name(member), order);
+        return core_->sort(key_of(member, order), all_nodes);
     }
 
     /// The same by an OpenCL C expression of `record`, of integer or float type, such as
-    /// "record.x * record.x + record.y * record.y". Throws OpenClError where it does not compile, and
-    /// Error where it is not one expression of up to 1024 characters: comments, braces, statements,
+    /// "record.depth * record.depth". Throws OpenClError with the compiler's log if it does not
+    /// compile, and Error if it is more than one expression: commas outside of parentheses, quoted
     /// text and directives are refused. Its value must be defined: after a division by 0 the order is
     /// not, and records may be lost.
     cl::Event sort_by(const std::string& expression, Order order = Order::ascending) {
-        return core_->sort(expression, order);
+        return core_->sort({expression, 64, order}, all_nodes);
+    }
+
+    /// Sorts the first `count` nodes of every list only: those that sort() would put there. The others
+    /// follow in any order. Takes less time than sort() where lists are several times as long; is the
+    /// same otherwise.
+    template <class M>
+    cl::Event partial_sort(M T::*member, std::uint32_t count, Order order = Order::ascending) {
+        return core_->sort(key_of(member, order), count);
+    }
+    cl::Event partial_sort_by(const std::string& expression, std::uint32_t count,
+                              Order order = Order::ascending) {
+        return core_->sort({expression, 64, order}, count);
+    }
+
+    /// Sorts without blocking, and without a second pool: each list in its place, by one work-item, which
+    /// takes longer for most lists. Lists whose links lead in circles end as lists without circles.
+    template <class M>
+    cl::Event sort_async(M T::*member, Order order = Order::ascending) {
+        return core_->sort_async(key_of(member, order));
+    }
+    cl::Event sort_by_async(const std::string& expression, Order order = Order::ascending) {
+        return core_->sort_async({expression, 64, order});
     }
 
     /// How long the lists are. Blocks.
@@ -201,6 +229,13 @@ public:
     [[nodiscard]] detail::ListsCore& core() const { return *core_; }
 
 private:
+    static constexpr std::uint32_t all_nodes = std::numeric_limits<std::uint32_t>::max();
+
+    template <class M>
+    static detail::SortKey key_of(M T::*member, Order order) {
+        return {"record." + detail::member_name(member), sizeof(M) <= 4 ? 32u : 64u, order};
+    }
+
     static const BuildReport& finish(detail::Build& build) {
         return detail::ListsCore::finish(build).front();
     }

@@ -113,4 +113,25 @@ typedef struct cellist_findings {
     CELLIST_UINT bad_cell_from_end;  // CELLIST_NONE less the lowest cell that is bad, or 0
 } cellist_findings;
 
+// Classes of lists by their length: up to 16, 32, 64, 128, 256 nodes, and more.
+#define CELLIST_SORT_CLASS_MIN 16u
+#define CELLIST_SORT_CLASSES 6u
+
+// What the kernels that sort find, from 0.
+typedef struct cellist_sort_state {
+    CELLIST_UINT nodes;      // that have their places, of linked lists
+    CELLIST_UINT chunks;     // of all long lists
+    CELLIST_UINT longest;    // nodes of a long list
+    CELLIST_UINT broken;     // lists with links that no build makes
+    CELLIST_UINT longer[4];  // lists that were left by each class
+    CELLIST_UINT in_class[CELLIST_SORT_CLASSES];  // lists that were sorted in work-groups
+} cellist_sort_state;
+
+// Where a long list is sorted.
+typedef struct cellist_sort_long {
+    CELLIST_UINT length;  // 0 if its links are broken
+    CELLIST_UINT first;   // node
+    CELLIST_UINT chunk;   // its first
+} cellist_sort_long;
+
 #endif

@@ -176,11 +176,16 @@ void wait_for_events(Scene& scene) {
 
 void build(Scene& scene) { scene.build(); }
 
-void build_automatic(Scene& scene) {
-    scene.build();
+/// Memory that an operation can do without may be missing in silence.
+void forgive_missing_memory(Scene& scene) {
     for (const faults::Fault& fault : faults::failures())
         scene.silent = fault.code == CL_MEM_OBJECT_ALLOCATION_FAILURE ||
                        fault.code == CL_OUT_OF_RESOURCES || fault.code == CL_OUT_OF_HOST_MEMORY;
+}
+
+void build_automatic(Scene& scene) {
+    scene.build();
+    forgive_missing_memory(scene);
 }
 
 Pending<BuildReport> start_build(Scene& scene) {
@@ -298,19 +303,74 @@ void clear(Scene& scene) {
     scene.lists.clear();
 }
 
+bool by_key(const Item& a, const Item& b) { return a.key != b.key ? a.key < b.key : a.id < b.id; }
+
+/// The device keeps the programs that it builds. This one is for lists without memory for a second pool.
+void keep_program_without_second_pool(Scene& scene, auto sort_async) {
+    const faults::Pause pause;
+    Lists<Item> lists(scene.device, {1}, {.storage = scene.options.storage});
+    sort_async(lists);
+}
+
 void sort_by_a_member(Scene& scene) {
+    keep_program_without_second_pool(scene, [](auto& lists) { lists.sort_async(&Item::key); });
     scene.lists.sort(&Item::key);
-    require_sorted(contents_of(scene.lists), scene.oracle, [](const Item& a, const Item& b) {
-        return a.key != b.key ? a.key < b.key : a.id < b.id;
-    });
+    forgive_missing_memory(scene);
+    require_sorted(contents_of(scene.lists), scene.oracle, by_key);
 }
 
 void sort_by_an_expression(Scene& scene) {
+    keep_program_without_second_pool(
+        scene, [](auto& lists) { lists.sort_by_async("record.id % 10", Order::descending); });
     scene.lists.sort_by("record.id % 10", Order::descending);
+    forgive_missing_memory(scene);
     require_sorted(contents_of(scene.lists), scene.oracle, [](const Item& a, const Item& b) {
         if (a.id % 10 != b.id % 10) return a.id % 10 > b.id % 10;
-        return a.key != b.key ? a.key < b.key : a.id < b.id;
+        return by_key(a, b);
     });
+}
+
+void sort_without_blocking(Scene& scene) {
+    scene.lists.sort_async(&Item::key);
+    require_sorted(contents_of(scene.lists), scene.oracle, by_key);
+}
+
+/// A list of more records than are ranked together. Whatever fails, it keeps them.
+void sort_a_long_list(Scene& scene) {
+    constexpr cl_uint repeats = 4;
+    std::optional<Lists<Item>> lists;
+    std::vector<Item> expected;
+    const auto found = [&] {
+        const faults::Pause pause;
+        require_sound(lists->validate());
+        const HostLists<Item> host = lists->download();
+        return std::vector<Item>(host.records().begin(), host.records().end());
+    };
+    {
+        const faults::Pause pause;
+        lists.emplace(scene.device, Shape{1}, ListsOptions{.storage = scene.options.storage});
+        Buffer<cl_uint> cells(scene.device, insert_count);
+        cells.fill(0);
+        lists->build([&] {
+            for (cl_uint i = 0; i < repeats; ++i)
+                scene.insert.run(range(), *lists, cells, scene.records, insert_count);
+        });
+        for (cl_uint i = 0; i < repeats; ++i)
+            expected.insert(expected.end(), scene.inserts.records.begin(),
+                            scene.inserts.records.end());
+        std::sort(expected.begin(), expected.end(), by_key);
+    }
+    keep_program_without_second_pool(scene, [](auto& own) { own.sort_async(&Item::key); });
+    try {
+        lists->sort(&Item::key);
+    } catch (const OpenClError&) {
+        std::vector<Item> kept = found();
+        std::sort(kept.begin(), kept.end(), by_key);
+        REQUIRE(kept == expected);
+        throw;
+    }
+    forgive_missing_memory(scene);
+    REQUIRE(found() == expected);
 }
 
 void lengths(Scene& scene) { require_lengths(scene.lists.lengths(), scene.oracle); }
@@ -377,6 +437,8 @@ constexpr Operation table[] = {
     {"clear", full, clear},
     {"sort by a member", full, sort_by_a_member},
     {"sort by an expression", full, sort_by_an_expression, repeated},
+    {"sort without blocking", full, sort_without_blocking},
+    {"sort a long list", full, sort_a_long_list, repeated},
     {"lengths", full, lengths},
     {"pack", full, pack, repeated},
     {"pack a member", full, pack_a_member, repeated},
@@ -400,7 +462,7 @@ void live_on(const Device& device, Storage storage) {
     require_all_stored(lists.build(insert, range(), cells, records, insert_count), oracle);
     require_lengths(lists.lengths(), oracle);
     require_packed(lists.pack(), oracle);
-    lists.sort_by("record.id");
+    lists.sort_by_async("record.id");
     require_sorted(lists.download(), oracle,
                    [](const Item& a, const Item& b) { return a.id < b.id; });
     require_sound(lists.validate());

@@ -3,6 +3,7 @@
 //
 // Input: what to do, one to three structs, the seed of the records.
 #include <algorithm>
+#include <limits>
 #include <random>
 #include <set>
 #include <vector>
@@ -305,7 +306,8 @@ void compare_records(const Device& device, Input& input, const Struct& record,
     const BuildReport report = detail::ListsCore::finish(*build).front();
     CELLIST_FUZZ_REQUIRE(report.stored == count && report.attempted == count);
 
-    lists.sort("record" + key.path, descending ? Order::descending : Order::ascending);
+    lists.sort({"record" + key.path, 64, descending ? Order::descending : Order::ascending},
+               std::numeric_limits<std::uint32_t>::max());
     CELLIST_FUZZ_REQUIRE(lists.validate()().ok());
     Bytes found;
     std::vector<cl_uint> offsets;

@@ -20,8 +20,18 @@ namespace cellist::detail {
 class Build;
 class CellScan;
 class Chooser;
+class ListSorter;
 class ListStorage;
 struct Trial;
+
+/// What lists are sorted by.
+struct SortKey {
+    std::string expression;  ///< of `record`
+    unsigned bits;           ///< 32 or 64: what its values need
+    Order order;
+
+    friend auto operator<=>(const SortKey&, const SortKey&) = default;
+};
 
 /// Lists without the record's C++ type: a storage, and the kernels that read and sort any storage.
 /// The kernels see the record by its name in OpenCL C. Stays where it is: a build that is pending
@@ -52,7 +62,11 @@ public:
                              const std::function<void(const Slice&)>& read);
 
     void clear();
-    cl::Event sort(const std::string& key, Order order);
+    /// Sorts `front` nodes of each list at least.
+    cl::Event sort(const SortKey& key, std::uint32_t front);
+    cl::Event sort_async(const SortKey& key);
+    /// Divides the work of sorts as on a device of this type; for tests.
+    void sort_as_on(cl_device_type type);
     [[nodiscard]] std::function<Validation()> validate() const;
 
     /// Enqueues the reading of every list's length; `lengths` has them when the event has completed.
@@ -91,6 +105,8 @@ public:
     /// Ends a pending build, and empties lists that a failure has left in no order. Throws what the
     /// build throws, or what fails still.
     void settle() const;
+    /// The same where what is enqueued next would otherwise find incomplete lists.
+    void settle_for_commands() const;
 
     // For Build.
     [[nodiscard]] ListStorage& storage() const { return *storage_; }
@@ -105,6 +121,7 @@ public:
     void empty_after_failure(bool without_pool) noexcept;
 
 private:
+    [[nodiscard]] ListSorter& sorter();
     BuildReport build_once(const std::function<void()>& insert);
     void measure_walk(Trial& trial) const;
     void use(Storage storage);
@@ -141,6 +158,7 @@ private:
     bool without_pool_ = false;    ///< the memory of the nodes is to be given back then
     mutable std::map<std::string, Kernel> kernels_;  ///< the library's, by name and definitions
     mutable std::unique_ptr<CellScan> scan_;
+    std::unique_ptr<ListSorter> sorter_;
 };
 
 }  // namespace cellist::detail

@@ -1,0 +1,113 @@
+// Sorts lists of any length where there is no memory for a second pool, one work-item a list. See
+// sort.cl.
+//
+// Linked lists: bottom-up merge sort of the list itself. pending[i] is a sorted list of 2^i nodes or
+// none, and taking a node in works like adding one to a binary number, each carry merging two lists of
+// equal size. Links in circles end after as many steps as a sound list takes. Lists in one piece: heap
+// sort.
+//
+//   cells   count   the cells to sort; all, from 0 on, if `listed` is 0
+
+// Whether record a, with key x, comes before record b, with key y.
+static inline int cellist_sort_before(struct CELLIST_RECORD a, cellist_sort_bits x,
+                                      struct CELLIST_RECORD b, cellist_sort_bits y) {
+    return x != y ? x < y : cellist_record_before(a, b, 0);
+}
+
+#if CELLIST_MODES == CELLIST_LINKED
+
+// Merges two sorted lists of up to `most` nodes together.
+static inline uint cellist_sort_merge(CELLIST_LISTS(CELLIST_RECORD, lists), uint a, uint b,
+                                      ulong most) {
+    uint first = CELLIST_NONE;
+    uint last = CELLIST_NONE;
+    cellist_sort_bits x = cellist_sort_key(cellist_get(lists, a));
+    cellist_sort_bits y = cellist_sort_key(cellist_get(lists, b));
+    for (ulong step = 0; step < most; ++step) {
+        const int b_first = cellist_sort_before(cellist_get(lists, b), y, cellist_get(lists, a), x);
+        const uint least = b_first ? b : a;
+        if (last == CELLIST_NONE)
+            first = least;
+        else
+            lists_nodes[last].next = least;
+        last = least;
+
+        const uint next = lists_nodes[least].next;
+        if (next >= lists_view.capacity_nodes) break;
+        if (b_first)
+            b = next, y = cellist_sort_key(cellist_get(lists, b));
+        else
+            a = next, x = cellist_sort_key(cellist_get(lists, a));
+    }
+    // One list has ended with `last`; the rest of the other follows.
+    lists_nodes[last].next = last == b ? a : b;
+    return first;
+}
+
+static inline void cellist_sort_cell(CELLIST_LISTS(CELLIST_RECORD, lists), uint cell) {
+    uint pending[32];
+    uint used = 0;
+    uint node = lists_heads[cell];
+    for (uint taken = 0; node < lists_view.capacity_nodes && taken < lists_view.capacity_nodes;
+         ++taken) {
+        const uint next = lists_nodes[node].next;
+        lists_nodes[node].next = CELLIST_NONE;
+        uint level = 0;
+        for (; level < used && pending[level] != CELLIST_NONE; ++level) {
+            node = cellist_sort_merge(CELLIST_PASS(lists), pending[level], node, 2ul << level);
+            pending[level] = CELLIST_NONE;
+        }
+        if (level == used) ++used;
+        pending[level] = node;
+        node = next;
+    }
+
+    uint sorted = CELLIST_NONE;
+    for (uint level = 0; level < used; ++level) {
+        if (pending[level] == CELLIST_NONE) continue;
+        sorted = sorted == CELLIST_NONE ? pending[level]
+                                        : cellist_sort_merge(CELLIST_PASS(lists), pending[level],
+                                                             sorted, 2ul << level);
+    }
+    lists_heads[cell] = sorted;
+}
+
+#else
+
+static inline int cellist_sort_first(struct CELLIST_RECORD a, struct CELLIST_RECORD b) {
+    return cellist_sort_before(a, cellist_sort_key(a), b, cellist_sort_key(b));
+}
+
+// Lets `record` sink from position `at` in the heap of `length` records: the last comes first.
+static inline void cellist_sort_sift(global struct CELLIST_RECORD* records, uint at, uint length,
+                                     struct CELLIST_RECORD record) {
+    while (at < length / 2) {
+        uint child = 2 * at + 1;
+        if (child + 1 < length && cellist_sort_first(records[child], records[child + 1])) ++child;
+        if (!cellist_sort_first(record, records[child])) break;
+        records[at] = records[child];
+        at = child;
+    }
+    records[at] = record;
+}
+
+static inline void cellist_sort_cell(CELLIST_LISTS(CELLIST_RECORD, lists), uint cell) {
+    const uint length = cellist_sort_length(lists_heads, lists_view, cell);
+    if (length < 2) return;
+    global struct CELLIST_RECORD* records =
+        &cellist_get(lists, cellist_begin(lists_heads, lists_view, cell));
+    for (uint i = length / 2; i > 0; --i) cellist_sort_sift(records, i - 1, length, records[i - 1]);
+    for (uint end = length - 1; end > 0; --end) {
+        const struct CELLIST_RECORD last = records[end];
+        records[end] = records[0];
+        cellist_sort_sift(records, 0, end, last);
+    }
+}
+
+#endif
+
+kernel void cellist_sort_in_place(CELLIST_LISTS(CELLIST_RECORD, lists), global const uint* cells,
+                                  uint listed, uint count) {
+    const uint i = get_global_id(0);
+    if (i < count) cellist_sort_cell(CELLIST_PASS(lists), listed ? cells[i] : i);
+}

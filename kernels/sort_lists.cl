@@ -1,0 +1,169 @@
+// Sorts lists of up to CELLIST_SORT_SLOTS nodes; see sort.cl.
+//
+// Linked lists move to another pool, one behind the other in any order, each in one piece: writing whole
+// nodes in a row takes less time than writing a link here and there, and so does reading them later.
+// The old pool and its heads stay as they are. Lists in one piece are sorted in their places.
+//
+//   cells     count    the cells to sort; all, from 0 on, if `listed` is 0
+//   longer    longer_end   out: cells with longer lists, as many as state->longer[stage] says
+//   state     1        in and out
+//   heads     cells    out: heads of the lists that move
+//   nodes     capacity_nodes   out: their nodes
+//
+// CELLIST_SORT_ITEMS work-items sort CELLIST_SORT_LISTS lists, and CELLIST_SORT_TEAM of them one list.
+// Barriers stand in uniform control flow, and the range is padded to whole work-groups.
+
+static inline uint cellist_sort_class(uint length) {
+    uint index = 0;
+    while (index < CELLIST_SORT_CLASSES - 1 && length > CELLIST_SORT_CLASS_MIN << index) ++index;
+    return index;
+}
+
+#define CELLIST_SORT_TEAMS (CELLIST_SORT_ITEMS / CELLIST_SORT_TEAM)
+
+CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
+                                       global const uint* cells, uint listed, uint count,
+                                       global uint* longer, uint longer_end, uint stage,
+                                       volatile global cellist_sort_state* state
+#if CELLIST_MODES == CELLIST_LINKED
+                                       ,
+                                       global uint* heads, global cellist_sort_node* nodes
+#endif
+) {
+    CELLIST_SORT_SHARED cellist_sort_bits keys[CELLIST_SORT_LISTS * CELLIST_SORT_STRIDE];
+    CELLIST_SORT_SHARED uchar order[CELLIST_SORT_LISTS * CELLIST_SORT_STRIDE];
+    CELLIST_SORT_SHARED uint sums[CELLIST_SORT_LISTS];
+#if CELLIST_SORT_ITEMS > 1
+    local uint in_class[CELLIST_SORT_CLASSES];
+#endif
+    global cellist_sort_node* own_nodes = (global cellist_sort_node*)lists_nodes;
+    const uint item = cellist_sort_item();
+    const ulong begin = (ulong)(get_global_id(0) / CELLIST_SORT_ITEMS) * CELLIST_SORT_LISTS;
+    const uint own = begin < count ? min(count - (uint)begin, (uint)CELLIST_SORT_LISTS) : 0;
+#define CELLIST_SORT_CELL(list) (listed ? cells[begin + (list)] : (uint)begin + (list))
+
+    for (uint i = item; i < CELLIST_SORT_LISTS; i += CELLIST_SORT_ITEMS) sums[i] = 0;
+#if CELLIST_SORT_ITEMS > 1
+    for (uint i = item; i < CELLIST_SORT_CLASSES; i += CELLIST_SORT_ITEMS) in_class[i] = 0;
+#endif
+
+#if CELLIST_MODES == CELLIST_LINKED
+    CELLIST_SORT_SHARED uint index[CELLIST_SORT_LISTS * CELLIST_SORT_STRIDE];
+    CELLIST_SORT_SHARED uint next[CELLIST_SORT_LISTS];
+    CELLIST_SORT_SHARED uint lengths[CELLIST_SORT_LISTS];
+    CELLIST_SORT_SHARED uint firsts[CELLIST_SORT_LISTS];
+    CELLIST_SORT_SHARED uint total;
+    CELLIST_SORT_SHARED uint base;
+    for (uint i = item; i < own; i += CELLIST_SORT_ITEMS) {
+        next[i] = lists_heads[CELLIST_SORT_CELL(i)];
+        lengths[i] = 0;
+    }
+    if (item == 0) total = 0;
+    // One node of each list at a time: a work-item waits for all of its lists together.
+    for (uint step = 0; step < CELLIST_SORT_SLOTS; ++step) {
+        uint more = 0;
+        for (uint i = item; i < own; i += CELLIST_SORT_ITEMS) {
+            const uint node = next[i];
+            if (node >= lists_view.capacity_nodes) continue;
+            index[i * CELLIST_SORT_STRIDE + step] = node;
+            lengths[i] = step + 1;
+            next[i] = lists_nodes[node].next;
+            more = 1;
+        }
+        if (!more) break;
+    }
+    cellist_sort_barrier();
+    for (uint i = item; i < own; i += CELLIST_SORT_ITEMS) {
+        if (next[i] < lists_view.capacity_nodes) {
+            const uint at = atomic_inc(&state->longer[stage]);
+            if (at < longer_end) longer[at] = CELLIST_SORT_CELL(i);
+            lengths[i] = CELLIST_NONE;
+        } else {
+            firsts[i] = cellist_sort_add(&total, lengths[i]);
+        }
+    }
+    cellist_sort_barrier();
+    if (item == 0) {
+        base = atomic_add(&state->nodes, total);
+        // More nodes than there are: lists share some of them.
+        if (total > lists_view.capacity_nodes || base > lists_view.capacity_nodes - total) {
+            atomic_inc(&state->broken);
+            total = CELLIST_NONE;
+        }
+    }
+    cellist_sort_barrier();
+#endif
+
+    for (uint round = 0; round < CELLIST_SORT_LISTS / CELLIST_SORT_TEAMS; ++round) {
+        const uint list = item / CELLIST_SORT_TEAM + round * CELLIST_SORT_TEAMS;
+        const uint member = item % CELLIST_SORT_TEAM;
+        const uint row = list * CELLIST_SORT_STRIDE;
+        uint length = 0;
+#if CELLIST_MODES == CELLIST_LINKED
+        if (list < own && lengths[list] != CELLIST_NONE && total != CELLIST_NONE) {
+            length = lengths[list];
+            if (member == 0)
+                heads[CELLIST_SORT_CELL(list)] = length > 0 ? base + firsts[list] : CELLIST_NONE;
+        }
+        for (uint i = member; i < length; i += CELLIST_SORT_TEAM)
+            keys[row + i] = cellist_sort_key(cellist_sort_record(own_nodes[index[row + i]]));
+#else
+        uint first = 0;
+        if (list < own) {
+            const uint cell = CELLIST_SORT_CELL(list);
+            first = cellist_begin(lists_heads, lists_view, cell);
+            length = cellist_sort_length(lists_heads, lists_view, cell);
+            if (length > CELLIST_SORT_SLOTS) {
+                length = 0;
+                if (member == 0) {
+                    const uint at = atomic_inc(&state->longer[stage]);
+                    if (at < longer_end) longer[at] = cell;
+                }
+            }
+        }
+        for (uint i = member; i < length; i += CELLIST_SORT_TEAM)
+            keys[row + i] = cellist_sort_key(cellist_sort_record(own_nodes[first + i]));
+#endif
+        cellist_sort_barrier();
+        for (uint at = member * CELLIST_SORT_WIDTH; at < length;
+             at += CELLIST_SORT_TEAM * CELLIST_SORT_WIDTH)
+            cellist_sort_add(&sums[list], cellist_sort_rank(keys + row, length, at, order + row));
+#if CELLIST_SORT_ITEMS > 1
+        if (member == 0 && length > 0) atomic_inc(&in_class[cellist_sort_class(length)]);
+#endif
+        cellist_sort_barrier();
+        if (length > 0 && sums[list] != length * (length - 1) / 2)
+            for (uint at = member * CELLIST_SORT_WIDTH; at < length;
+                 at += CELLIST_SORT_TEAM * CELLIST_SORT_WIDTH)
+#if CELLIST_MODES == CELLIST_LINKED
+                cellist_sort_rank_equal(own_nodes, 0, index + row, keys + row, length, at,
+                                        order + row);
+#else
+                cellist_sort_rank_equal(own_nodes, first, 0, keys + row, length, at, order + row);
+#endif
+        cellist_sort_barrier();
+#if CELLIST_MODES == CELLIST_LINKED
+        for (uint i = member; i < length; i += CELLIST_SORT_TEAM) {
+            const uint at = base + firsts[list];
+            cellist_sort_store(nodes, at + i, at + length - 1,
+                               own_nodes[index[row + order[row + i]]]);
+        }
+#else
+        cellist_sort_node moved[CELLIST_SORT_SLOTS / CELLIST_SORT_TEAM];
+        for (uint i = 0;
+             i < CELLIST_SORT_SLOTS / CELLIST_SORT_TEAM && member + i * CELLIST_SORT_TEAM < length;
+             ++i)
+            moved[i] = own_nodes[first + order[row + member + i * CELLIST_SORT_TEAM]];
+        cellist_sort_barrier();
+        for (uint i = 0;
+             i < CELLIST_SORT_SLOTS / CELLIST_SORT_TEAM && member + i * CELLIST_SORT_TEAM < length;
+             ++i)
+            own_nodes[first + member + i * CELLIST_SORT_TEAM] = moved[i];
+#endif
+    }
+
+#if CELLIST_SORT_ITEMS > 1
+    for (uint i = item; i < CELLIST_SORT_CLASSES; i += CELLIST_SORT_ITEMS)
+        if (in_class[i] > 0) atomic_add(&state->in_class[i], in_class[i]);
+#endif
+}

@@ -1,0 +1,323 @@
+// Sorts long lists with all work-items together: chunks of CELLIST_SORT_SLOTS nodes are ranked, then
+// merged in passes between two pools. See sort.cl.
+//
+// Linked lists are copied to another pool first, each in one piece. They are walked in parallel: some
+// nodes are splitters, one in each 2^CELLIST_SORT_PART_BITS nodes of the pool, at a place that depends
+// on a hash, and a list consists of parts, each from the head or a splitter to the next splitter
+// (Helman, JaJa: "Designing Practical Efficient Algorithms for Symmetric Multiprocessors", ALENEX
+// 1999, section 4).
+//
+//   longer   lists                the cells
+//   parts    splitters + lists    a part's nodes, and the part behind it or CELLIST_NONE; the last
+//                                 ones begin at the heads
+//   places   splitters + lists    the list of a part or CELLIST_NONE, and its nodes before the part
+//   longs    lists                where each list is
+//   owners   owners_end           the list of each chunk
+//   heads    cells                heads of the lists that move
+//   nodes    capacity_nodes       their nodes
+//   from, to capacity_nodes       the pools; every second pass goes from the one that holds the lists to
+//                                 the other
+//
+// A list that lies in one piece stays a list between any two of these kernels. Every loop is bounded, and
+// no link leads outside of the pool, whatever the links are.
+
+// The part behind a part that is too long: a part of a sound list is so long once in e^64 times.
+#define CELLIST_SORT_BROKEN (CELLIST_NONE - 1u)
+#define CELLIST_SORT_PART_MAX (64u << CELLIST_SORT_PART_BITS)
+
+#if CELLIST_MODES == CELLIST_LINKED
+
+static inline uint cellist_sort_splitters(const cellist_view view) {
+    return view.capacity_nodes >> CELLIST_SORT_PART_BITS;
+}
+
+static inline uint cellist_sort_splitter(uint part) {
+    const uint hash = part * 0x9E3779B1u >> (32u - CELLIST_SORT_PART_BITS);
+    return (part << CELLIST_SORT_PART_BITS) + hash;
+}
+
+static inline int cellist_sort_is_splitter(const cellist_view view, uint node) {
+    const uint part = node >> CELLIST_SORT_PART_BITS;
+    return part < cellist_sort_splitters(view) && node == cellist_sort_splitter(part);
+}
+
+static inline uint cellist_sort_part_begin(CELLIST_LISTS(CELLIST_RECORD, lists),
+                                           global const uint* longer, uint part) {
+    const uint splitters = cellist_sort_splitters(lists_view);
+    return part < splitters ? cellist_sort_splitter(part) : lists_heads[longer[part - splitters]];
+}
+
+// How long each part is. A work-item walks CELLIST_SORT_LISTS parts at a time.
+kernel void cellist_sort_measure(CELLIST_LISTS(CELLIST_RECORD, lists), global const uint* longer,
+                                 uint count, global uint2* parts) {
+    const uint splitters = cellist_sort_splitters(lists_view);
+    const ulong end = (ulong)splitters + count;
+    const ulong begin = (ulong)get_global_id(0) * CELLIST_SORT_LISTS;
+    if (begin >= end) return;
+    const uint own = (uint)min(end - begin, (ulong)CELLIST_SORT_LISTS);
+    uint next[CELLIST_SORT_LISTS];
+    uint lengths[CELLIST_SORT_LISTS];
+    for (uint i = 0; i < own; ++i) {
+        const uint part = (uint)begin + i;
+        next[i] = cellist_sort_part_begin(CELLIST_PASS(lists), longer, part);
+        lengths[i] = part < splitters;
+        if (part < splitters) next[i] = lists_nodes[next[i]].next;
+    }
+    for (uint step = 0; step < CELLIST_SORT_PART_MAX; ++step) {
+        uint more = 0;
+        for (uint i = 0; i < own; ++i) {
+            const uint node = next[i];
+            if (node >= lists_view.capacity_nodes || cellist_sort_is_splitter(lists_view, node))
+                continue;
+            next[i] = lists_nodes[node].next;
+            ++lengths[i];
+            more = 1;
+        }
+        if (!more) break;
+    }
+    for (uint i = 0; i < own; ++i) {
+        uint behind = CELLIST_NONE;
+        if (next[i] < lists_view.capacity_nodes)
+            behind = cellist_sort_is_splitter(lists_view, next[i])
+                         ? next[i] >> CELLIST_SORT_PART_BITS
+                         : CELLIST_SORT_BROKEN;
+        parts[begin + i] = (uint2)(lengths[i], behind);
+    }
+}
+
+// Finds the place of each part of a list. Returns the length of the list, or 0 if it is broken.
+static inline uint cellist_sort_chain(const cellist_view view, uint list, global const uint2* parts,
+                                      global uint2* places) {
+    const uint splitters = cellist_sort_splitters(view);
+    uint part = splitters + list;
+    uint length = 0;
+    for (uint step = 0; step <= splitters; ++step) {
+        const uint2 own = parts[part];
+        places[part] = (uint2)(list, length);
+        length += own.x;
+        if (length > view.capacity_nodes || own.y == CELLIST_SORT_BROKEN) return 0;
+        if (own.y == CELLIST_NONE) return length;
+        part = own.y;
+    }
+    return 0;
+}
+
+#endif
+
+// Gives each list its chunks, and linked lists their nodes; one work-item a list.
+kernel void cellist_sort_place(CELLIST_LISTS(CELLIST_RECORD, lists), global const uint* longer,
+                               uint count, global cellist_sort_long* longs, global uint* owners,
+                               uint owners_end, volatile global cellist_sort_state* state
+#if CELLIST_MODES == CELLIST_LINKED
+                               ,
+                               global const uint2* parts, global uint2* places, global uint* heads
+#endif
+) {
+    const uint i = get_global_id(0);
+    if (i >= count) return;
+    cellist_sort_long list = {0, 0, 0};
+    const uint cell = longer[i];
+#if CELLIST_MODES == CELLIST_LINKED
+    list.length = cellist_sort_chain(lists_view, i, parts, places);
+    list.first = atomic_add(&state->nodes, list.length);
+#else
+    list.length = cellist_sort_length(lists_heads, lists_view, cell);
+    list.first = cellist_begin(lists_heads, lists_view, cell);
+#endif
+    const uint chunks = (list.length + (CELLIST_SORT_SLOTS - 1)) / CELLIST_SORT_SLOTS;
+    list.chunk = atomic_add(&state->chunks, chunks);
+    if (list.length == 0 || list.length > lists_view.capacity_nodes ||
+        list.first > lists_view.capacity_nodes - list.length || list.chunk > owners_end - chunks) {
+        atomic_inc(&state->broken);
+        list.length = 0;
+    } else {
+        atomic_max(&state->longest, list.length);
+        for (uint chunk = 0; chunk < chunks; ++chunk) owners[list.chunk + chunk] = i;
+#if CELLIST_MODES == CELLIST_LINKED
+        heads[cell] = list.first;
+#endif
+    }
+    longs[i] = list;
+}
+
+#if CELLIST_MODES == CELLIST_LINKED
+
+// Copies the nodes of the lists; work-items as in cellist_sort_measure.
+kernel void cellist_sort_collect(CELLIST_LISTS(CELLIST_RECORD, lists), global const uint* longer,
+                                 uint count, global const cellist_sort_long* longs,
+                                 global const uint2* parts, global const uint2* places,
+                                 global cellist_sort_node* nodes) {
+    const ulong end = (ulong)cellist_sort_splitters(lists_view) + count;
+    const ulong begin = (ulong)get_global_id(0) * CELLIST_SORT_LISTS;
+    if (begin >= end) return;
+    const uint own = (uint)min(end - begin, (ulong)CELLIST_SORT_LISTS);
+    uint next[CELLIST_SORT_LISTS];
+    uint at[CELLIST_SORT_LISTS];
+    uint ends[CELLIST_SORT_LISTS];
+    uint lasts[CELLIST_SORT_LISTS];
+    for (uint i = 0; i < own; ++i) {
+        const uint2 place = places[begin + i];
+        next[i] = CELLIST_NONE;
+        if (place.x >= count) continue;
+        const cellist_sort_long list = longs[place.x];
+        const uint length = parts[begin + i].x;
+        if (place.y > list.length || length > list.length - place.y) continue;
+        next[i] = cellist_sort_part_begin(CELLIST_PASS(lists), longer, (uint)begin + i);
+        at[i] = list.first + place.y;
+        ends[i] = at[i] + length;
+        lasts[i] = list.first + list.length - 1;
+    }
+    for (uint step = 0; step < CELLIST_SORT_PART_MAX; ++step) {
+        uint more = 0;
+        for (uint i = 0; i < own; ++i) {
+            const uint node = next[i];
+            if (node >= lists_view.capacity_nodes || at[i] == ends[i]) continue;
+            next[i] = lists_nodes[node].next;
+            cellist_sort_store(nodes, at[i], lasts[i],
+                               ((global const cellist_sort_node*)lists_nodes)[node]);
+            ++at[i];
+            more = 1;
+        }
+        if (!more) break;
+    }
+}
+
+// Says that the first `stored` nodes of the pool are allocated, and no others; one work-item a shard.
+kernel void cellist_sort_allocate(CELLIST_LISTS(CELLIST_RECORD, lists), uint stored) {
+    const uint shard = get_global_id(0);
+    if (shard >= 1u << lists_view.shard_bits) return;
+    cellist_view view = lists_view;
+    view.capacity_nodes = stored;
+    lists_shards[shard].allocated = cellist_shard_nodes(view, shard);
+}
+
+#endif
+
+// Sorts each chunk; CELLIST_SORT_ITEMS work-items a chunk.
+CELLIST_SORT_KERNEL cellist_sort_chunks(global const cellist_sort_long* longs,
+                                        global const uint* owners, uint chunks,
+                                        global cellist_sort_node* nodes) {
+    CELLIST_SORT_SHARED cellist_sort_bits keys[CELLIST_SORT_SLOTS];
+    CELLIST_SORT_SHARED uchar order[CELLIST_SORT_SLOTS];
+    CELLIST_SORT_SHARED uint sum;
+    const uint item = cellist_sort_item();
+    const uint chunk = (uint)(get_global_id(0) / CELLIST_SORT_ITEMS);
+    uint first = 0;
+    uint last = 0;
+    uint length = 0;
+    if (chunk < chunks) {
+        const cellist_sort_long list = longs[owners[chunk]];
+        const uint begin = (chunk - list.chunk) * CELLIST_SORT_SLOTS;
+        first = list.first + begin;
+        last = list.first + list.length - 1;
+        length = min(list.length - begin, (uint)CELLIST_SORT_SLOTS);
+    }
+    if (item == 0) sum = 0;
+    for (uint i = item; i < length; i += CELLIST_SORT_ITEMS)
+        keys[i] = cellist_sort_key(cellist_sort_record(nodes[first + i]));
+    cellist_sort_barrier();
+    for (uint at = item * CELLIST_SORT_WIDTH; at < length;
+         at += CELLIST_SORT_ITEMS * CELLIST_SORT_WIDTH)
+        cellist_sort_add(&sum, cellist_sort_rank(keys, length, at, order));
+    cellist_sort_barrier();
+    if (length > 0 && sum != length * (length - 1) / 2)
+        for (uint at = item * CELLIST_SORT_WIDTH; at < length;
+             at += CELLIST_SORT_ITEMS * CELLIST_SORT_WIDTH)
+            cellist_sort_rank_equal(nodes, first, 0, keys, length, at, order);
+    cellist_sort_barrier();
+    cellist_sort_node moved[CELLIST_SORT_SLOTS / CELLIST_SORT_ITEMS];
+    for (uint i = 0;
+         i < CELLIST_SORT_SLOTS / CELLIST_SORT_ITEMS && item + i * CELLIST_SORT_ITEMS < length; ++i)
+        moved[i] = nodes[first + order[item + i * CELLIST_SORT_ITEMS]];
+    cellist_sort_barrier();
+    for (uint i = 0;
+         i < CELLIST_SORT_SLOTS / CELLIST_SORT_ITEMS && item + i * CELLIST_SORT_ITEMS < length; ++i)
+        cellist_sort_store(nodes, first + item + i * CELLIST_SORT_ITEMS, last, moved[i]);
+}
+
+// Whether node a, with key x, comes before node b, with key y.
+static inline uint cellist_sort_before(global const cellist_sort_node* a, cellist_sort_bits x,
+                                       global const cellist_sort_node* b, cellist_sort_bits y) {
+    if (x != y) return x < y;
+    return cellist_record_before(cellist_sort_record(*a), cellist_sort_record(*b), 0);
+}
+
+// How many of the first `taken` nodes of two sorted runs together are of the first run (Odeh, Green,
+// Mwassi, Shmueli, Birk: "Merge Path", IPDPSW 2012).
+static inline uint cellist_sort_split(global const cellist_sort_node* a, uint a_length,
+                                      global const cellist_sort_node* b, uint b_length,
+                                      uint taken) {
+    uint least = taken > b_length ? taken - b_length : 0;
+    uint most = min(taken, a_length);
+    while (least < most) {
+        const uint middle = least + (most - least) / 2;
+        global const cellist_sort_node* x = a + middle;
+        global const cellist_sort_node* y = b + (taken - 1 - middle);
+        if (cellist_sort_before(y, cellist_sort_key(cellist_sort_record(*y)), x,
+                                cellist_sort_key(cellist_sort_record(*x))))
+            most = middle;
+        else
+            least = middle + 1;
+    }
+    return least;
+}
+
+// Merges pairs of runs of `run` nodes; a work-item writes CELLIST_SORT_SHARE nodes of a list, a power
+// of two.
+kernel void cellist_sort_merge(global const cellist_sort_long* longs, global const uint* owners,
+                               uint chunks, global const cellist_sort_node* from,
+                               global cellist_sort_node* to, uint run) {
+    const uint per_chunk = max(CELLIST_SORT_SLOTS / CELLIST_SORT_SHARE, 1);
+    const ulong item = get_global_id(0);
+    if (item >= (ulong)chunks * per_chunk) return;
+    const uint chunk = (uint)(item / per_chunk);
+    const cellist_sort_long list = longs[owners[chunk]];
+    const uint begin =
+        (chunk - list.chunk) * CELLIST_SORT_SLOTS + (uint)(item % per_chunk) * CELLIST_SORT_SHARE;
+    if (run >= list.length || begin >= list.length || begin % CELLIST_SORT_SHARE != 0) return;
+    const uint end = min(list.length - begin, (uint)CELLIST_SORT_SHARE) + begin;
+    from += list.first;
+
+    for (uint at = begin; at < end;) {
+        const uint first = (uint)(at - at % (2 * (ulong)run));
+        const uint a_end = first + min(list.length - first, run);
+        const uint b_end = a_end + min(list.length - a_end, run);
+        uint a = first + cellist_sort_split(from + first, a_end - first, from + a_end,
+                                            b_end - a_end, at - first);
+        uint b = a_end + at - a;
+        const uint stop = min(end, b_end);
+        // As many steps at a time as neither run ends in. They compute instead of branching: no
+        // processor foresees which run is next.
+        while (at < stop && a < a_end && b < b_end) {
+            const uint last = at + min(stop - at, min(a_end - a, b_end - b));
+            for (; at < last; ++at) {
+                const cellist_sort_bits x = cellist_sort_key(cellist_sort_record(from[a]));
+                const cellist_sort_bits y = cellist_sort_key(cellist_sort_record(from[b]));
+                uint b_first = y < x;
+                if (x == y) b_first = cellist_sort_before(&from[b], y, &from[a], x);
+                cellist_sort_store(to, list.first + at, list.first + list.length - 1,
+                                   from[a + ((b - a) & (0 - b_first))]);
+                a += 1 - b_first;
+                b += b_first;
+            }
+        }
+        for (; at < stop; ++at)
+            cellist_sort_store(to, list.first + at, list.first + list.length - 1,
+                               from[a < a_end ? a++ : b++]);
+    }
+}
+
+// Copies the lists whose last pass left them in the other pool; one work-item a node.
+kernel void cellist_sort_return(global const cellist_sort_long* longs, global const uint* owners,
+                                uint chunks, global const cellist_sort_node* from,
+                                global cellist_sort_node* to) {
+    const ulong item = get_global_id(0);
+    if (item >= (ulong)chunks * CELLIST_SORT_SLOTS) return;
+    const uint chunk = (uint)(item / CELLIST_SORT_SLOTS);
+    const cellist_sort_long list = longs[owners[chunk]];
+    const uint at = (chunk - list.chunk) * CELLIST_SORT_SLOTS + (uint)(item % CELLIST_SORT_SLOTS);
+    if (at >= list.length) return;
+    uint odd = 0;
+    for (ulong run = CELLIST_SORT_SLOTS; run < list.length; run *= 2) odd = !odd;
+    if (odd) to[list.first + at] = from[list.first + at];
+}

@@ -1,0 +1,104 @@
+// Brings the first few records of every list to its front, in order; the others follow in any order. See
+// sort.cl. The whole list is visited.
+//
+//   wanted    records of each list that are brought to its front, at most CELLIST_SORT_FRONT
+//   longest  lists of more nodes are left as they are, and counted in state->longer[0]
+//
+// Links and offsets stay as they are, records move: those that come first to the first nodes of the list,
+// and those that were there to where these come from. A work-item has CELLIST_SORT_LISTS lists.
+
+// The nodes of a list whose records come first, in order, and its first nodes.
+typedef struct cellist_sort_front {
+    cellist_sort_bits keys[CELLIST_SORT_FRONT];
+    uint nodes[CELLIST_SORT_FRONT];
+    uint numbers[CELLIST_SORT_FRONT];  // in the list, from 0
+    uint places[CELLIST_SORT_FRONT];   // the first nodes
+} cellist_sort_front;
+
+// Looks at the next node of a list, the `number`-th.
+static inline void cellist_sort_take(CELLIST_LISTS(CELLIST_RECORD, lists),
+                                     cellist_sort_front* front, uint wanted, uint number,
+                                     uint node) {
+    const cellist_sort_bits key = cellist_sort_key(cellist_get(lists, node));
+    if (number < wanted) front->places[number] = node;
+    uint at = min(number, wanted);
+    for (; at > 0; --at) {
+        if (key > front->keys[at - 1]) break;
+        if (key == front->keys[at - 1] &&
+            !cellist_record_before(cellist_get(lists, node),
+                                   cellist_get(lists, front->nodes[at - 1]), 0))
+            break;
+        if (at == wanted) continue;
+        front->keys[at] = front->keys[at - 1];
+        front->nodes[at] = front->nodes[at - 1];
+        front->numbers[at] = front->numbers[at - 1];
+    }
+    if (at == wanted) return;
+    front->keys[at] = key;
+    front->nodes[at] = node;
+    front->numbers[at] = number;
+}
+
+// Moves `count` records to the first nodes.
+static inline void cellist_sort_move(CELLIST_LISTS(CELLIST_RECORD, lists),
+                                     const cellist_sort_front* front, uint count) {
+    struct CELLIST_RECORD records[CELLIST_SORT_FRONT];
+    // Bit i: the record of the first nodes' i-th is among those that come first.
+    ulong staying = 0;
+    for (uint i = 0; i < count; ++i) {
+        records[i] = cellist_get(lists, front->nodes[i]);
+        if (front->numbers[i] < count) staying |= 1ul << front->numbers[i];
+    }
+    uint leaving = 0;
+    for (uint i = 0; i < count; ++i) {
+        if (front->numbers[i] < count) continue;
+        while (staying >> leaving & 1) ++leaving;
+        cellist_get(lists, front->nodes[i]) = cellist_get(lists, front->places[leaving++]);
+    }
+    for (uint i = 0; i < count; ++i) cellist_get(lists, front->places[i]) = records[i];
+}
+
+kernel void cellist_sort_partial(CELLIST_LISTS(CELLIST_RECORD, lists), uint wanted, uint longest,
+                                 volatile global cellist_sort_state* state) {
+    const ulong begin = (ulong)get_global_id(0) * CELLIST_SORT_LISTS;
+    if (begin >= cellist_cells(lists)) return;
+    const uint own = min(cellist_cells(lists) - (uint)begin, (uint)CELLIST_SORT_LISTS);
+    cellist_sort_front fronts[CELLIST_SORT_LISTS];
+    uint next[CELLIST_SORT_LISTS];
+    uint ends[CELLIST_SORT_LISTS];  // a node that is not of the list
+    uint lengths[CELLIST_SORT_LISTS];
+    for (uint i = 0; i < own; ++i) {
+        const uint cell = (uint)begin + i;
+        lengths[i] = 0;
+#if CELLIST_MODES == CELLIST_LINKED
+        next[i] = lists_heads[cell];
+        ends[i] = CELLIST_NONE;
+#else
+        next[i] = cellist_begin(lists_heads, lists_view, cell);
+        ends[i] = next[i] + cellist_sort_length(lists_heads, lists_view, cell);
+#endif
+    }
+    // One node of each list at a time: a work-item waits for all of its lists together.
+    for (uint step = 0; step < longest; ++step) {
+        uint more = 0;
+        for (uint i = 0; i < own; ++i) {
+            const uint node = next[i];
+            if (node == ends[i] || node >= lists_view.capacity_nodes) continue;
+#if CELLIST_MODES == CELLIST_LINKED
+            next[i] = lists_nodes[node].next;
+#else
+            ++next[i];
+#endif
+            cellist_sort_take(CELLIST_PASS(lists), &fronts[i], wanted, step, node);
+            lengths[i] = step + 1;
+            more = 1;
+        }
+        if (!more) break;
+    }
+    for (uint i = 0; i < own; ++i) {
+        if (next[i] != ends[i] && next[i] < lists_view.capacity_nodes)
+            atomic_inc(&state->longer[0]);
+        else
+            cellist_sort_move(CELLIST_PASS(lists), &fronts[i], min(lengths[i], wanted));
+    }
+}

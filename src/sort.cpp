@@ -1,0 +1,293 @@
+#include "sort.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "cellist_kernels.hpp"
+
+namespace cellist::detail {
+
+namespace {
+
+/// Nodes of the pool for one splitter of long linked lists; see sort_long.cl.
+constexpr unsigned part_bits = 9;
+
+/// Longest list whose first nodes are looked for by one work-item.
+constexpr cl_uint front_length_max = 4096;
+
+template <class... T>
+Arguments arguments_of(const T&... values) {
+    Arguments arguments;
+    (arguments.add(values), ...);
+    return arguments;
+}
+
+template <class... T>
+Arguments arguments_of(const ListStorage& storage, const T&... values) {
+    Arguments arguments;
+    storage.add_to(arguments);
+    (arguments.add(values), ...);
+    return arguments;
+}
+
+std::string define(const char* name, unsigned value) {
+    return std::string("#define CELLIST_SORT_") + name + " " + std::to_string(value) + "\n";
+}
+
+/// Defines cellist_sort_key.
+std::string key_function(const SortKey& key) {
+    const std::string type = key.bits == 32 ? "uint" : "ulong";
+    // Where clang knows that a value is undefined, it is an error: the sort around it would be undefined
+    // as well.
+    return "#ifdef __clang__\n#pragma clang diagnostic push\n"
+           "#pragma clang diagnostic error \"-Wdivision-by-zero\"\n"
+           "#pragma clang diagnostic error \"-Warray-bounds\"\n#endif\n"
+           "#line 1 \"sort expression\"\n"
+           "static inline " +
+           type + " cellist_sort_key(struct CELLIST_RECORD record) { return (" + type + ")" +
+           (key.order == Order::descending ? "~" : "") +
+           "cellist_order(\n#line 1 \"sort expression\"\n" + key.expression +
+           "\n); }\n#ifdef __clang__\n#pragma clang diagnostic pop\n#endif\n";
+}
+
+std::string kernel_source(const char* name, std::string_view source, const std::string& record,
+                          const SortKey& key, const SortTuning& tuning) {
+    std::string text = "#define CELLIST_RECORD " + record + "\n" + define("KEY_BITS", key.bits) +
+                       define("SLOTS", tuning.slots) + define("WIDTH", tuning.width) +
+                       define("ITEMS", tuning.items) + define("TEAM", tuning.team) +
+                       define("LISTS", tuning.lists) + define("SHARE", tuning.share) +
+                       define("FRONT", tuning.front) + define("PART_BITS", part_bits) +
+                       "#line 1 \"sort.cl\"\n";
+    text += kernels::sort_cl;
+    text += key_function(key) + "#line 1 \"" + name + ".cl\"\n";
+    text += source;
+    return text;
+}
+
+}  // namespace
+
+ListSorter::ListSorter(std::shared_ptr<DeviceState> device, Definitions definitions)
+    : device_(std::move(device)),
+      definitions_(std::move(definitions)),
+      device_type_(device_->info.type),
+      state_(device_, 1, sizeof(cellist_sort_state), "state of a sort"),
+      cells_{Memory(device_, 1, sizeof(cl_uint), "cells with long lists"),
+             Memory(device_, 1, sizeof(cl_uint), "cells with long lists")} {}
+
+Kernel& ListSorter::kernel(const char* name, std::string_view source, const Sort& sort,
+                           const SortTuning& tuning) {
+    const std::tuple id(std::string(name), sort.storage.mode(), sort.key, tuning);
+    if (const auto known = kernels_.find(id); known != kernels_.end()) return known->second;
+    definitions_.modes = sort.storage.mode();
+    const std::string text =
+        kernel_source(name, source, definitions_.records.back().name, sort.key, tuning);
+    return kernels_.emplace(id, Kernel(device_, Source{.text = text}, name, definitions_))
+        .first->second;
+}
+
+void ListSorter::clear_state() {
+    constexpr cl_uint zero = 0;
+    state_.fill(&zero, sizeof zero, sizeof(cellist_sort_state));
+}
+
+void ListSorter::read_state(Sort& sort) const {
+    state_.read(&sort.state, sizeof sort.state);
+    if (sort.state.broken > 0)
+        throw Error(
+            "lists cannot be sorted: links lead in circles, or from several lists to the "
+            "same nodes (Lists::validate() finds them); the lists are as they were");
+}
+
+ListSorter::Sort ListSorter::sort_of(ListStorage& storage, const SortKey& key) const {
+    const bool linked = storage.mode() == CELLIST_LINKED;
+    return {.storage = storage,
+            .key = key,
+            .plan = SortPlan(device_type_, linked, definitions_.records.back().size),
+            .linked = linked,
+            .count = storage.cells()};
+}
+
+cl::Event ListSorter::sort(ListStorage& storage, const SortKey& key, std::uint32_t front) {
+    if (storage.cells() == 0 || front == 0) return device_->marker();
+    Sort sort = sort_of(storage, key);
+    if (bring_to_front(sort, front)) return std::move(sort.done);
+    if (sort.linked && storage.spare() == nullptr) return sort_in_place(storage, key);
+    sort_classes(sort);
+    if (sort.count > 0)
+        sort_long(sort);
+    else if (sort.linked)
+        adopt(sort);
+    return std::move(sort.done);
+}
+
+cl::Event ListSorter::sort_in_place(ListStorage& storage, const SortKey& key) {
+    if (storage.cells() == 0) return device_->marker();
+    Sort sort = sort_of(storage, key);
+    sort_in_place(sort);
+    return std::move(sort.done);
+}
+
+/// Sorts the lists that are left without more memory.
+void ListSorter::sort_in_place(Sort& sort) {
+    const cl_uint listed = sort.cells != nullptr ? 1 : 0;
+    const cl::Buffer& cells = listed ? sort.cells->cl() : state_.cl();
+    const auto count = static_cast<cl_uint>(sort.count);
+    sort.done =
+        kernel("cellist_sort_in_place", kernels::sort_in_place_cl, sort, sort.plan.of_long_lists())
+            .enqueue(Range::padded(count, 64), arguments_of(sort.storage, cells, listed, count));
+}
+
+/// True if every list has its first records at its front then. False if lists are to be sorted: because
+/// that takes less time, or there are long lists, or more records than a work-item keeps.
+bool ListSorter::bring_to_front(Sort& sort, std::uint32_t front) {
+    if (!sort.plan.front_pays(front, sort.storage.stored() / sort.storage.cells())) return false;
+    const SortTuning tuning = sort.plan.of_front(front);
+    clear_state();
+    sort.done = kernel("cellist_sort_partial", kernels::sort_partial_cl, sort, tuning)
+                    .enqueue(Range::padded((sort.count + tuning.lists - 1) / tuning.lists, 64),
+                             arguments_of(sort.storage, front, front_length_max, state_.cl()));
+    read_state(sort);
+    return sort.state.longer[0] == 0;
+}
+
+/// The class that most lists belong to: by the last sort, or by the mean length.
+std::size_t ListSorter::first_class(const Sort& sort) const {
+    std::uint64_t longer = std::accumulate(in_class_.begin(), in_class_.end(), std::uint64_t{0});
+    if (longer == 0)
+        return sort.plan.class_for(sort.storage.stored() / sort.storage.cells() * 3 / 2);
+    const std::uint64_t few = longer / 16;
+    std::size_t index = 0;
+    longer -= in_class_[0];
+    while (index + 1 < sort.plan.classes() && longer > few) longer -= in_class_[++index];
+    return index;
+}
+
+/// Sorts the lists that are not longer than those of the last class.
+void ListSorter::sort_classes(Sort& sort) {
+    clear_state();
+    std::size_t index = first_class(sort);
+    const std::size_t last = sort.plan.classes() - 1;
+    for (cl_uint stage = 0;; ++stage) {
+        sort_class(sort, sort.plan.of_class(index), stage);
+        read_state(sort);
+        sort.count = sort.state.longer[stage];
+        if (sort.count == 0 || index == last) break;
+        // Long lists are few: a class for each of their lengths would be more launches for little.
+        index = std::min(index + 2, last);
+    }
+    std::copy_n(sort.state.in_class, CELLIST_SORT_CLASSES, in_class_.begin());
+    in_class_.back() += static_cast<cl_uint>(sort.count);
+}
+
+/// Sorts a class of the lists that are left, and collects the cells of those that are longer.
+void ListSorter::sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage) {
+    const ListStorage& storage = sort.storage;
+    // Sound lists that are longer than the class are no more than this.
+    const std::uint64_t most =
+        std::min<std::uint64_t>(sort.count, storage.capacity_nodes() / (tuning.slots + 1));
+    Memory& longer = cells_[stage % 2];
+    if (longer.size_bytes() < most * sizeof(cl_uint))
+        longer = Memory(device_, most, sizeof(cl_uint), "cells with long lists");
+    const cl_uint listed = sort.cells != nullptr ? 1 : 0;
+    Arguments arguments = arguments_of(storage, listed ? sort.cells->cl() : state_.cl(), listed,
+                                       static_cast<cl_uint>(sort.count), longer.cl(),
+                                       static_cast<cl_uint>(most), stage, state_.cl());
+    if (sort.linked) {
+        const ListStorage::Spare* spare = sort.storage.spare();
+        arguments.add(spare->heads.cl());
+        arguments.add(spare->nodes.cl());
+    }
+    const std::uint64_t together = (sort.count + tuning.lists - 1) / tuning.lists;
+    sort.done =
+        kernel("cellist_sort_lists", kernels::sort_lists_cl, sort, tuning)
+            .enqueue(Range::padded(together * tuning.items, tuning.items == 1 ? 64 : tuning.items),
+                     arguments);
+    sort.cells = &longer;
+}
+
+/// Sorts the lists that are left: puts each in one piece, sorts chunks of them, and merges these.
+void ListSorter::sort_long(Sort& sort) {
+    ListStorage& storage = sort.storage;
+    const ListStorage::Spare* spare = storage.spare();
+    if (spare == nullptr) return sort_in_place(sort);
+    const SortTuning tuning = sort.plan.of_long_lists();
+    const auto count = static_cast<cl_uint>(sort.count);
+    const cl::Buffer& cells = sort.cells->cl();
+    const Memory longs(device_, count, sizeof(cellist_sort_long), "long lists");
+    const std::uint64_t owners_end = storage.capacity_nodes() / tuning.slots + count;
+    const Memory owners(device_, owners_end, sizeof(cl_uint), "owners of chunks");
+    const std::uint64_t part_count =
+        sort.linked ? (storage.capacity_nodes() >> part_bits) + count : 0;
+    const Memory parts(device_, part_count, sizeof(cl_uint2), "parts of lists");
+    Memory places(device_, part_count, sizeof(cl_uint2), "places of parts of lists");
+    const Range walks = Range::padded((part_count + tuning.lists - 1) / tuning.lists,
+                                      sort.plan.in_groups() ? 64 : 16);
+
+    Arguments place = arguments_of(storage, cells, count, longs.cl(), owners.cl(),
+                                   static_cast<cl_uint>(owners_end), state_.cl());
+    if (sort.linked) {
+        constexpr cl_uint none = CELLIST_NONE;
+        places.fill(&none, sizeof none, places.size_bytes());
+        run_long(sort, "cellist_sort_measure", walks,
+                 arguments_of(storage, cells, count, parts.cl()));
+        place.add(parts.cl());
+        place.add(places.cl());
+        place.add(spare->heads.cl());
+    }
+    run_long(sort, "cellist_sort_place", Range::padded(count, 64), place);
+    if (sort.linked)
+        run_long(sort, "cellist_sort_collect", walks,
+                 arguments_of(storage, cells, count, longs.cl(), parts.cl(), places.cl(),
+                              spare->nodes.cl()));
+    read_state(sort);
+    if (sort.linked) adopt(sort);
+    merge(sort, longs, owners);
+}
+
+/// Sorts long lists that lie in one piece each.
+void ListSorter::merge(Sort& sort, const Memory& longs, const Memory& owners) {
+    const SortTuning tuning = sort.plan.of_long_lists();
+    const cl_uint chunks = sort.state.chunks;
+    const cl::Buffer& nodes = sort.storage.nodes();
+    const cl::Buffer& spare = sort.storage.spare()->nodes.cl();
+    run_long(
+        sort, "cellist_sort_chunks",
+        Range::padded(std::uint64_t{chunks} * tuning.items, tuning.items == 1 ? 16 : tuning.items),
+        arguments_of(longs.cl(), owners.cl(), chunks, nodes));
+
+    const unsigned shares = std::max(tuning.slots / tuning.share, 1u);
+    const Range merges =
+        Range::padded(std::uint64_t{chunks} * shares, sort.plan.in_groups() ? 128 : 16);
+    const cl::Buffer* from = &nodes;
+    const cl::Buffer* to = &spare;
+    for (std::uint64_t run = tuning.slots; run < sort.state.longest; run *= 2) {
+        run_long(
+            sort, "cellist_sort_merge", merges,
+            arguments_of(longs.cl(), owners.cl(), chunks, *from, *to, static_cast<cl_uint>(run)));
+        std::swap(from, to);
+    }
+    run_long(sort, "cellist_sort_return", Range::padded(std::uint64_t{chunks} * tuning.slots),
+             arguments_of(longs.cl(), owners.cl(), chunks, spare, nodes));
+}
+
+/// Enqueues a kernel of sort_long.cl.
+void ListSorter::run_long(Sort& sort, const char* name, const Range& range,
+                          const Arguments& arguments) {
+    sort.done = kernel(name, kernels::sort_long_cl, sort, sort.plan.of_long_lists())
+                    .enqueue(range, arguments);
+}
+
+/// Puts the lists that have moved in the place of those that have not.
+void ListSorter::adopt(Sort& sort) {
+    ListStorage& storage = sort.storage;
+    if (sort.state.nodes != storage.stored())
+        throw Error("lists cannot be sorted: they have " + std::to_string(sort.state.nodes) +
+                    " nodes instead of " + std::to_string(storage.stored()) +
+                    " (Lists::validate() finds why); the lists are as they were");
+    if (storage.stored() < storage.capacity_nodes())
+        run_long(sort, "cellist_sort_allocate", Range::padded(1u << CELLIST_SHARD_BITS_MAX),
+                 arguments_of(storage, static_cast<cl_uint>(storage.stored())));
+    storage.exchange_spare();
+}
+
+}  // namespace cellist::detail

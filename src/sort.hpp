@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <tuple>
+
+#include <cellist/detail/lists_core.hpp>
+#include <cellist/detail/memory.hpp>
+#include <cellist/detail/record_type.hpp>
+#include <cellist/kernel.hpp>
+
+#include "device_state.hpp"
+#include "sort_tuning.hpp"
+#include "storage.hpp"
+#include "view.hpp"
+
+namespace cellist::detail {
+
+/// Sorts the lists of a container in classes by their length: up to some hundred nodes by ranking, each
+/// list on its own; longer ones by all work-items together. Kernels are compiled when a list needs them.
+class ListSorter {
+public:
+    ListSorter(std::shared_ptr<DeviceState> device, Definitions definitions);
+
+    /// Sorts all lists; `front` nodes of each at least, the others may follow in any order. Blocks until
+    /// it is known how long the lists are. Throws Error where links lead in circles. Whatever fails,
+    /// lists hold what they held, in some order.
+    cl::Event sort(ListStorage& storage, const SortKey& key, std::uint32_t front);
+    /// Sorts all lists in their places, one work-item a list. Does not block.
+    cl::Event sort_in_place(ListStorage& storage, const SortKey& key);
+
+    /// Divides the work from now on as on a device of this type; for tests.
+    void set_device_type(cl_device_type type) { device_type_ = type; }
+
+private:
+    /// A sort that is under way.
+    struct Sort {
+        ListStorage& storage;
+        const SortKey& key;
+        SortPlan plan;
+        bool linked;
+        std::uint64_t count;       ///< lists that are left
+        const Memory* cells = {};  ///< whose lists these are; null for all
+        cl::Event done = {};       ///< of the last command
+        cellist_sort_state state = {};
+    };
+
+    [[nodiscard]] Sort sort_of(ListStorage& storage, const SortKey& key) const;
+    bool bring_to_front(Sort& sort, std::uint32_t front);
+    void sort_in_place(Sort& sort);
+    void sort_classes(Sort& sort);
+    void sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage);
+    void sort_long(Sort& sort);
+    void merge(Sort& sort, const Memory& longs, const Memory& owners);
+    void run_long(Sort& sort, const char* name, const Range& range, const Arguments& arguments);
+    void adopt(Sort& sort);
+    [[nodiscard]] std::size_t first_class(const Sort& sort) const;
+
+    void clear_state();
+    void read_state(Sort& sort) const;
+    Kernel& kernel(const char* name, std::string_view source, const Sort& sort,
+                   const SortTuning& tuning);
+
+    std::shared_ptr<DeviceState> device_;
+    Definitions definitions_;
+    cl_device_type device_type_;
+    Memory state_;
+    std::array<Memory, 2> cells_;  ///< whose lists each class leaves, by turns
+    std::map<std::tuple<std::string, cl_uint, SortKey, SortTuning>, Kernel> kernels_;
+    std::array<cl_uint, CELLIST_SORT_CLASSES> in_class_{};  ///< lists of the last sort
+};
+
+}  // namespace cellist::detail

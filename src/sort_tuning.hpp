@@ -1,0 +1,53 @@
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+
+#include <cellist/opencl.hpp>
+
+namespace cellist::detail {
+
+/// How the work of a sort is divided among work-items; see kernels/sort.cl.
+struct SortTuning {
+    unsigned slots;      ///< records that are ranked together
+    unsigned width;      ///< records that a work-item ranks at once
+    unsigned items;      ///< work-items that sort together
+    unsigned team;       ///< work-items that sort a list
+    unsigned lists;      ///< lists that `items` sort, or parts of lists that a work-item walks
+    unsigned share = 1;  ///< nodes that a work-item merges
+    unsigned front = 1;  ///< most records that a work-item brings to the front
+
+    friend auto operator<=>(const SortTuning&, const SortTuning&) = default;
+};
+
+/// What is best for a type of device and a kind of node. GPUs sort a list with several work-items that
+/// share local memory, and have a class for each power of two of its length from 16 to 256. Elsewhere
+/// one work-item sorts several lists, and there is one class.
+class SortPlan {
+public:
+    SortPlan(cl_device_type type, bool linked, std::size_t record_bytes)
+        : in_groups_((type & CL_DEVICE_TYPE_GPU) != 0),
+          linked_(linked),
+          record_bytes_(record_bytes) {}
+
+    [[nodiscard]] bool in_groups() const { return in_groups_; }
+    /// Classes of lists that are ranked; longer lists are merged.
+    [[nodiscard]] std::size_t classes() const;
+    [[nodiscard]] SortTuning of_class(std::size_t index) const;
+    /// The class that lists of `length` nodes belong to: the last one if none has room for them.
+    [[nodiscard]] std::size_t class_for(std::uint64_t length) const;
+    [[nodiscard]] SortTuning of_long_lists() const;
+
+    /// Whether bringing `front` records to the front of lists of `mean` nodes takes less time than
+    /// sorting the lists.
+    [[nodiscard]] bool front_pays(std::uint32_t front, std::uint64_t mean) const;
+    [[nodiscard]] SortTuning of_front(std::uint32_t front) const;
+
+private:
+    bool in_groups_;
+    bool linked_;
+    std::size_t record_bytes_;
+};
+
+}  // namespace cellist::detail
