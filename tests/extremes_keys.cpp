@@ -8,7 +8,9 @@
 namespace cellist::test {
 namespace {
 
-constexpr std::array<cl_uint, 15> lengths{0, 1, 2, 3, 15, 16, 17, 31, 32, 33, 65, 129, 257, 600, 0};
+constexpr std::array<cl_uint, 14> short_lengths{0,  1,  2,  3,  15,  16,  17,
+                                                31, 32, 33, 65, 129, 256, 0};
+constexpr std::array<cl_uint, 5> long_lengths{257, 0, 600, 3000, 1};
 
 /// A way to sort lists, and what it is called.
 template <class T>
@@ -30,25 +32,29 @@ Sort<T> by_expression(const char* expression) {
 template <class T>
 class Everywhere {
 public:
-    explicit Everywhere(std::mt19937& random) : inserts_(extreme_inserts<T>(lengths, random)) {
+    Everywhere(std::span<const cl_uint> lengths, std::mt19937& random)
+        : cells_(lengths.size()), inserts_(extreme_inserts<T>(lengths, random)) {
         for (const Storage storage : all_storages) {
-            lists_.emplace_back(device(), Shape{lengths.size()}, ListsOptions{.storage = storage});
+            lists_.emplace_back(device(), Shape{cells_}, ListsOptions{.storage = storage});
             require_complete(Inserter(lists_.back()).build(lists_.back(), inserts_),
                              inserts_.size());
         }
     }
 
-    /// Requires that a sort is one by `key`, a member or a function of the record.
+    /// Requires that a sort is one by `key`, a member or a function of the record, in both orders. Lists
+    /// in one piece are the same to a sort, counted or fixed: each takes one of the orders, by turns.
     void require_sorts(const Sort<T>& sort, auto key) {
         for (const Order order : all_orders) {
             const HostLists<T> expected = expect(key, order);
-            for (Lists<T>& lists : lists_) require_sorts_to(expected, lists, sort, order);
+            require_sorts_to(expected, lists_.front(), sort, order);
+            require_sorts_to(expected, lists_[1 + turn_++ % 2], sort, order);
         }
+        ++turn_;
     }
 
     /// The same in one storage and one order, others than the last time.
     void require_sorts_once(const Sort<T>& sort, auto key) {
-        const Order order = all_orders[turn_ / lists_.size() % 2];
+        const Order order = all_orders[turn_ % all_orders.size()];
         require_sorts_to(expect(key, order), lists_[turn_ % lists_.size()], sort, order);
         ++turn_;
     }
@@ -58,7 +64,7 @@ public:
 
 private:
     [[nodiscard]] HostLists<T> expect(auto key, Order order) const {
-        return sorted_lists(inserts_, lengths.size(), before<T>(key, order));
+        return sorted_lists(inserts_, cells_, before<T>(key, order));
     }
 
     void require_sorts_to(const HostLists<T>& expected, Lists<T>& lists, const Sort<T>& sort,
@@ -72,6 +78,7 @@ private:
         ++count_;
     }
 
+    std::uint64_t cells_;
     Inserts<T> inserts_;
     std::vector<Lists<T>> lists_;
     std::size_t turn_ = 0;
@@ -80,25 +87,31 @@ private:
 
 TEST_CASE("lists are sorted by keys at the borders of their types", "[extremes]") {
     CELLIST_RANDOM(random, 80u);
-    Everywhere<Numbers> numbers(random);
-    const auto everywhere = [&](const char* name, auto member) {
+    Everywhere<Numbers> numbers(short_lengths, random);
+    const auto sort_by = [&](const char* name, auto member) {
         numbers.require_sorts(by_member(name, member), member);
     };
-    everywhere("ulong", &Numbers::ulong_value);
-    everywhere("long", &Numbers::long_value);
-    everywhere("float", &Numbers::float_value);
-    everywhere("uint", &Numbers::uint_value);
-    everywhere("int", &Numbers::int_value);
-    // What is shorter is an int to the comparison.
-    const auto once = [&](const char* name, auto member) {
-        numbers.require_sorts_once(by_member(name, member), member);
+    sort_by("ulong", &Numbers::ulong_value);
+    sort_by("long", &Numbers::long_value);
+    sort_by("float", &Numbers::float_value);
+    sort_by("uint", &Numbers::uint_value);
+    sort_by("int", &Numbers::int_value);
+    std::cout << "extremes: " << numbers.count() << " sorted downloads by keys of 5 types"
+              << std::endl;
+}
+
+TEST_CASE("lists are sorted by short keys at the borders of their types", "[extremes]") {
+    CELLIST_RANDOM(random, 81u);
+    Everywhere<Narrow> narrow(short_lengths, random);
+    const auto sort_by = [&](const char* name, auto member) {
+        narrow.require_sorts_once(by_member(name, member), member);
     };
-    once("ushort", &Numbers::ushort_value);
-    once("short", &Numbers::short_value);
-    once("enum", &Numbers::level);
-    once("uchar", &Numbers::uchar_value);
-    once("char", &Numbers::char_value);
-    std::cout << "extremes: " << numbers.count() << " sorted downloads by keys of 10 types"
+    sort_by("ushort", &Narrow::ushort_value);
+    sort_by("short", &Narrow::short_value);
+    sort_by("enum", &Narrow::level);
+    sort_by("uchar", &Narrow::uchar_value);
+    sort_by("char", &Narrow::char_value);
+    std::cout << "extremes: " << narrow.count() << " sorted downloads by keys of 5 short types"
               << std::endl;
 }
 
@@ -109,7 +122,7 @@ TEST_CASE("lists are sorted by doubles at the borders of the type, where the dev
         REQUIRE_THROWS_AS(Lists<Wide>(device(), {2}).sort(&Wide::key), Error);
         return;
     }
-    Everywhere<Wide> doubles(random);
+    Everywhere<Wide> doubles(short_lengths, random);
     doubles.require_sorts(by_member("double", &Wide::key), &Wide::key);
     // 2^53 + 1 is 2^53 in double.
     doubles.require_sorts_once(by_expression<Wide>("(double)record.id"), [](const Wide& record) {
@@ -118,10 +131,23 @@ TEST_CASE("lists are sorted by doubles at the borders of the type, where the dev
     std::cout << "extremes: " << doubles.count() << " sorted downloads by doubles" << std::endl;
 }
 
+TEST_CASE("long lists are sorted by keys at the borders of their types", "[extremes]") {
+    CELLIST_RANDOM(random, 88u);
+    Everywhere<Numbers> numbers(long_lengths, random);
+    const auto sort_by = [&](const char* name, auto member) {
+        numbers.require_sorts_once(by_member(name, member), member);
+    };
+    sort_by("ulong", &Numbers::ulong_value);
+    sort_by("int", &Numbers::int_value);
+    sort_by("long", &Numbers::long_value);
+    sort_by("uint", &Numbers::uint_value);
+    std::cout << "extremes: " << numbers.count() << " sorted downloads of long lists" << std::endl;
+}
+
 TEST_CASE("lists are sorted by expressions at the borders of their types", "[extremes]") {
     CELLIST_RANDOM(random, 84u);
-    Everywhere<Numbers> numbers(random);
-    numbers.require_sorts(
+    Everywhere<Numbers> numbers(short_lengths, random);
+    numbers.require_sorts_once(
         by_expression<Numbers>("isnan(record.float_value) ? -INFINITY : record.float_value"),
         [](const Numbers& record) {
             return std::isnan(record.float_value) ? -std::numeric_limits<cl_float>::infinity()

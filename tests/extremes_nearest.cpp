@@ -10,18 +10,22 @@ namespace {
 
 constexpr std::array<cl_uint, 8> lengths{0, 1, 2, 8, 9, 10, 100, 600};
 
-/// Calls `use(name, member)` for each key of Numbers.
-void for_each_key(auto use) {
-    use("ulong_value", &Numbers::ulong_value);
-    use("long_value", &Numbers::long_value);
-    use("float_value", &Numbers::float_value);
-    use("uint_value", &Numbers::uint_value);
-    use("int_value", &Numbers::int_value);
-    use("ushort_value", &Numbers::ushort_value);
-    use("short_value", &Numbers::short_value);
-    use("level", &Numbers::level);
-    use("uchar_value", &Numbers::uchar_value);
-    use("char_value", &Numbers::char_value);
+/// Calls `use(inserts, name, member)` for a key of each type that the device has.
+void for_each_key(std::mt19937& random, auto use) {
+    const auto numbers = extreme_inserts<Numbers>(lengths, random);
+    use(numbers, "ulong_value", &Numbers::ulong_value);
+    use(numbers, "long_value", &Numbers::long_value);
+    use(numbers, "float_value", &Numbers::float_value);
+    use(numbers, "uint_value", &Numbers::uint_value);
+    use(numbers, "int_value", &Numbers::int_value);
+    const auto narrow = extreme_inserts<Narrow>(lengths, random);
+    use(narrow, "ushort_value", &Narrow::ushort_value);
+    use(narrow, "short_value", &Narrow::short_value);
+    use(narrow, "level", &Narrow::level);
+    use(narrow, "uchar_value", &Narrow::uchar_value);
+    use(narrow, "char_value", &Narrow::char_value);
+    if (!device().info().fp64) return;
+    use(extreme_inserts<Wide>(lengths, random), "key", &Wide::key);
 }
 
 /// The first records of each list.
@@ -109,42 +113,49 @@ void require_keeps_nearest(const Inserts<T>& inserts, std::uint32_t slots, const
     require_same(lists.download(), oracle_of(first_of(sorted, slots)));
 }
 
+/// Requires that the 9 nearest by `key` are sorted to the front of lists in a storage.
+template <class T>
+void require_sorts_nearest(const Inserts<T>& inserts, Storage storage, auto key) {
+    INFO("storage " << name_of(storage));
+    Lists<T> lists(device(), {lengths.size()}, {.storage = storage});
+    Inserter(lists).build(lists, inserts);
+    lists.partial_sort(key, 9);
+    const HostLists<T> found = lists.download();
+    const HostLists<T> sorted = sorted_lists(inserts, lengths.size(), before<T>(key));
+    require_same(found, oracle_of(sorted));
+    REQUIRE(same_bits(first_of(found, 9), first_of(sorted, 9)));
+}
+
 TEST_CASE("kernels take the nearest records by keys at the borders of their types", "[extremes]") {
     CELLIST_RANDOM(random, 85u);
-    const auto numbers = extreme_inserts<Numbers>(lengths, random);
     std::size_t cases = 0;
-    for_each_key([&](const char* name, auto key) {
-        require_takes_nearest(numbers, all_storages[cases++ % all_storages.size()], name, key);
+    for_each_key(random, [&](const auto& inserts, const char* name, auto key) {
+        require_takes_nearest(inserts, all_storages[cases++ % all_storages.size()], name, key);
     });
-    for (const Storage storage : all_storages) {
-        require_takes_nearest(numbers, storage, "float_value", &Numbers::float_value);
-        ++cases;
-    }
-    if (device().info().fp64) {
-        const auto doubles = extreme_inserts<Wide>(lengths, random);
-        require_takes_nearest(doubles, Storage::linked, "key", &Wide::key);
-        ++cases;
-    }
     std::cout << "extremes: the nearest records were taken in " << cases << " cases" << std::endl;
 }
 
 TEST_CASE("the nearest records by keys at the borders of their types are kept", "[extremes]") {
     CELLIST_RANDOM(random, 86u);
-    const auto numbers = extreme_inserts<Numbers>(lengths, random);
-    std::size_t cases = 0;
-    for (const std::uint32_t slots : {0u, 1u, 9u, 200u, 1000u})
-        for_each_key([&](const char* name, auto key) {
-            require_keeps_nearest(numbers, slots, name, key);
-            ++cases;
-        });
-    if (device().info().fp64) {
-        const auto doubles = extreme_inserts<Wide>(lengths, random);
+    int cases = 0;
+    for_each_key(random, [&](const auto& inserts, const char* name, auto key) {
         for (const std::uint32_t slots : {0u, 1u, 9u, 200u, 1000u}) {
-            require_keeps_nearest(doubles, slots, "key", &Wide::key);
+            require_keeps_nearest(inserts, slots, name, key);
             ++cases;
         }
-    }
+    });
     std::cout << "extremes: the nearest records were kept in " << cases << " cases" << std::endl;
+}
+
+TEST_CASE("the nearest records by keys at the borders of their types are sorted to the front",
+          "[extremes]") {
+    CELLIST_RANDOM(random, 88u);
+    const auto numbers = extreme_inserts<Numbers>(lengths, random);
+    require_sorts_nearest(numbers, Storage::linked, &Numbers::float_value);
+    require_sorts_nearest(numbers, Storage::counted, &Numbers::long_value);
+    if (!device().info().fp64) return;
+    const auto doubles = extreme_inserts<Wide>(lengths, random);
+    require_sorts_nearest(doubles, Storage::fixed, &Wide::key);
 }
 
 TEST_CASE("a member at the borders of its type is packed alone", "[extremes]") {

@@ -3,8 +3,7 @@
 #include <bit>
 
 #include "support/errors.hpp"
-#include "support/inserts.hpp"
-#include "support/order.hpp"
+#include "support/sorted.hpp"
 #include "support/storages.hpp"
 
 namespace cellist::test {

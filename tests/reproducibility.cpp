@@ -2,8 +2,7 @@
 #include <bit>
 #include <iostream>
 
-#include "support/inserts.hpp"
-#include "support/order.hpp"
+#include "support/sorted.hpp"
 #include "support/storages.hpp"
 
 namespace cellist::test {
