@@ -132,8 +132,14 @@ struct Outcome {
     std::uint64_t stored = 0;  ///< links that said so
 };
 
+/// Functions that return a struct leave an intrinsic where they are inlined,
+/// llvm.experimental.noalias.scope.decl, that Oclgrind 21.10 does not know: it drops the kernel.
+std::string build_options() {
+    return device().info().platform == "Oclgrind" ? "-cl-opt-disable" : "";
+}
+
 Outcome run(Lists<Item>& lists, const Plan& plan) {
-    Kernel kernel(device(), source, "link_some", lists);
+    Kernel kernel(device(), Source{.text = source, .options = build_options()}, "link_some", lists);
     const Buffer<cl_uint> expected(device(), plan.expected);
     const Buffer<cl_uint> links(device(), plan.links);
     const Buffer<cl_uint> stored(device(), plan.links.size());
@@ -285,7 +291,7 @@ TEST_CASE("reservations are handed to functions, and negative numbers reserve no
     }
 }
 
-TEST_CASE("a few reservations overflow a small pool") {
+TEST_CASE("a few reservations overflow a small pool", "[oclgrind]") {
     Plan plan;
     for (cl_uint i = 0; i < 40; ++i) plan.add(4, 1 + i % 4);
     for (const std::uint64_t capacity : {61u, 200u}) {

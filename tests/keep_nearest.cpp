@@ -1,26 +1,13 @@
 // Overflow::keep_nearest keeps exactly the records of each cell that come first, ties included, whatever
 // the order of insertion.
 #include <bit>
-#include <limits>
 
 #include "support/errors.hpp"
-#include "support/inserts.hpp"
+#include "support/sorted.hpp"
 #include "support/storages.hpp"
 
 namespace cellist::test {
 namespace {
-
-/// An unsigned integer in the order of the key: -inf < ... < -0 < +0 < ... < +inf < NaN.
-std::uint64_t order(cl_float key) {
-    const auto bits = std::bit_cast<std::uint32_t>(key);
-    const std::uint32_t ascending = (bits >> 31) != 0 ? ~bits : bits | 0x80000000u;
-    // Negative NaNs are the lowest here, and come behind everything.
-    return ascending < 0x007FFFFFu ? std::uint64_t{ascending} + (1ull << 32) : ascending;
-}
-std::uint64_t order(cl_uint key) { return key; }
-std::uint64_t order(cl_int key) { return static_cast<cl_uint>(key) ^ 0x80000000u; }
-std::uint64_t order(cl_ulong key) { return key; }
-std::uint64_t order(cl_long key) { return static_cast<cl_ulong>(key) ^ (1ull << 63); }
 
 ListsOptions nearest(std::uint32_t slots, const char* by) {
     return {.storage = Storage::fixed,
@@ -62,7 +49,7 @@ std::uint64_t kept(const Oracle<Item>& oracle, std::uint64_t cells, std::uint32_
     return sum;
 }
 
-constexpr auto by_key = [](const Item& item) { return std::pair(order(item.key), item.id); };
+constexpr auto by_key = [](const Item& item) { return members(item); };
 
 TEST_CASE("the records that come first are kept, for every number of slots", "[oclgrind]") {
     CELLIST_RANDOM(random, 250u);
@@ -125,73 +112,11 @@ TEST_CASE("records that are the same in every member are kept as often as there 
     require_first(lists, inserts, 5, by_key);
 }
 
-struct Keys {
-    cl_uint a;
-    cl_int b;
-    cl_ulong c;
-    cl_long d;
-    cl_uint e[2];
+struct Arrays {
+    cl_uint key;
+    cl_uint numbers[2];
 };
-CELLIST_STRUCT(Keys, a, b, c, d, e);
-
-auto rank_by(const Keys& keys, std::uint64_t first) {
-    return std::tuple(first, order(keys.a), order(keys.b), order(keys.c), order(keys.d), keys.e[0],
-                      keys.e[1]);
-}
-
-TEST_CASE("keys of 32 and 64 bits are ranked, borders and few different values among them") {
-    CELLIST_RANDOM(random, 253u);
-    const std::vector<cl_ulong> borders{0,
-                                        1,
-                                        0x7FFFFFFF,
-                                        0x80000000,
-                                        0xFFFFFFFF,
-                                        0x100000000,
-                                        0x7FFFFFFFFFFFFFFF,
-                                        0x8000000000000000,
-                                        0xFFFFFFFFFFFFFFFF};
-    const auto any = [&] { return borders[below(random, static_cast<cl_uint>(borders.size()))]; };
-    Inserts<Keys> inserts;
-    for (cl_uint i = 0; i < 2000; ++i)
-        inserts.add(below(random, 5), {static_cast<cl_uint>(any()),
-                                       static_cast<cl_int>(any()),
-                                       any(),
-                                       static_cast<cl_long>(any()),
-                                       {below(random, 2), below(random, 100)}});
-    const auto check = [&](const char* member, auto key) {
-        INFO("by " << member);
-        for (const std::uint32_t slots : {1u, 9u, 200u}) {
-            Lists<Keys> lists(device(), {5}, nearest(slots, member));
-            const BuildReport report = Inserter(lists).build(lists, inserts);
-            REQUIRE(report.stored == 5 * slots);
-            require_first(lists, inserts, slots,
-                          [&](const Keys& keys) { return rank_by(keys, key(keys)); });
-        }
-    };
-    check("a", [](const Keys& keys) { return order(keys.a); });
-    check("b", [](const Keys& keys) { return order(keys.b); });
-    check("c", [](const Keys& keys) { return order(keys.c); });
-    check("d", [](const Keys& keys) { return order(keys.d); });
-}
-
-TEST_CASE("floats are ranked from -inf to +inf, -0 before +0, NaN last") {
-    CELLIST_RANDOM(random, 254u);
-    const std::vector<cl_uint> bits{0x00000000, 0x80000000, 0x00000001, 0x80000001, 0x007FFFFF,
-                                    0x3F800000, 0xBF800000, 0x7F7FFFFF, 0xFF7FFFFF, 0x7F800000,
-                                    0xFF800000, 0x7FC00000, 0xFFC00000, 0x7FFFFFFF, 0xFFFFFFFF};
-    for (const std::uint32_t slots : {1u, 5u, 60u, 150u}) {
-        INFO(slots << " slots");
-        Inserts<Item> inserts;
-        for (cl_uint i = 0; i < 400; ++i)
-            inserts.add(
-                i % 2,
-                {std::bit_cast<cl_float>(bits[below(random, static_cast<cl_uint>(bits.size()))]),
-                 i});
-        Lists<Item> lists(device(), {2}, nearest(slots, "key"));
-        require_report(Inserter(lists).build(lists, inserts), 400, 0, 2 * slots);
-        require_first(lists, inserts, slots, by_key);
-    }
-}
+CELLIST_STRUCT(Arrays, key, numbers);
 
 TEST_CASE("what cannot keep the nearest is refused") {
     const auto refused = [](const ListsOptions& options) {
@@ -209,7 +134,7 @@ TEST_CASE("what cannot keep the nearest is refused") {
         options.capacity_nodes = 10;
         REQUIRE(contains(refused(options), "Storage::fixed"));
     }
-    const auto error = error_of([] { Lists<Keys>(device(), {5}, nearest(4, "e")); });
+    const auto error = error_of([] { Lists<Arrays>(device(), {5}, nearest(4, "numbers")); });
     REQUIRE(contains(error.what(), "scalar member"));
 }
 

@@ -36,6 +36,17 @@ TEST_CASE("a small pool of several shards overflows", "[oclgrind]") {
     require_sound(lists, report.stored);
 }
 
+TEST_CASE("a small container chooses its storage", "[oclgrind]") {
+    CELLIST_RANDOM(random, 173u);
+    const Inserts<Item> inserts = random_inserts(93, 10, random);
+    Lists<Item> lists(device(), {10}, {.storage = Storage::automatic});
+    Inserter inserter(lists);
+    for (int build = 0; build < 13; ++build) {
+        inserter.build(lists, inserts);
+        require_same(lists.download(), oracle_of(inserts, 10));
+    }
+}
+
 TEST_CASE("the nearest records of small lists are taken", "[oclgrind]") {
     CELLIST_EACH_STORAGE(storage);
     CELLIST_RANDOM(random, 172u);

@@ -1,19 +1,12 @@
 // The sorted lists depend on what was inserted, not on when: downloads are equal bit for bit.
 #include <bit>
-#include <cstring>
 #include <iostream>
 
-#include "support/inserts.hpp"
+#include "support/sorted.hpp"
 #include "support/storages.hpp"
 
 namespace cellist::test {
 namespace {
-
-bool same_bits(const HostLists<Item>& a, const HostLists<Item>& b) {
-    return a.offsets() == b.offsets() && a.records().size() == b.records().size() &&
-           std::memcmp(a.records().data(), b.records().data(), a.records().size() * sizeof(Item)) ==
-               0;
-}
 
 constexpr int permutations = 50;
 
