@@ -80,6 +80,17 @@ static inline uint cellist_sort_length(volatile global uint* heads, const cellis
 }
 #endif
 
+// Leaves a list to another class. Sound lists that are longer than a class are no more than `longer` has
+// room for.
+static inline void cellist_sort_leave(global uint* longer, uint longer_end, uint stage, uint cell,
+                                      volatile global cellist_sort_state* state) {
+    const uint at = atomic_inc(&state->longer[stage]);
+    if (at < longer_end)
+        longer[at] = cell;
+    else
+        atomic_inc(&state->broken);
+}
+
 // For each of CELLIST_SORT_WIDTH keys, from the one `at` on, how many of `length` keys are less.
 static inline void cellist_sort_count(CELLIST_SORT_SHARED const cellist_sort_bits* keys,
                                       uint length, uint at, uint* places) {

@@ -75,8 +75,7 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
     cellist_sort_barrier();
     for (uint i = item; i < own; i += CELLIST_SORT_ITEMS) {
         if (next[i] < lists_view.capacity_nodes) {
-            const uint at = atomic_inc(&state->longer[stage]);
-            if (at < longer_end) longer[at] = CELLIST_SORT_CELL(i);
+            cellist_sort_leave(longer, longer_end, stage, CELLIST_SORT_CELL(i), state);
             lengths[i] = CELLIST_NONE;
         } else {
             firsts[i] = cellist_sort_add(&total, lengths[i]);
@@ -115,10 +114,7 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
             length = cellist_sort_length(lists_heads, lists_view, cell);
             if (length > CELLIST_SORT_SLOTS) {
                 length = 0;
-                if (member == 0) {
-                    const uint at = atomic_inc(&state->longer[stage]);
-                    if (at < longer_end) longer[at] = cell;
-                }
+                if (member == 0) cellist_sort_leave(longer, longer_end, stage, cell, state);
             }
         }
         for (uint i = member; i < length; i += CELLIST_SORT_TEAM)

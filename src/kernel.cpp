@@ -24,6 +24,7 @@ using detail::ProgramText;
 struct Parameter {
     std::string declaration;    ///< e.g. "uint count"
     std::string type;           ///< of the value or of what a pointer points to, e.g. "uint"
+    std::string comparable;     ///< what of the type must be the same in an argument
     bool is_container = false;  ///< the nodes of a container; `type` is their record
     Arguments::Kind kind = Arguments::Kind::value;
     std::size_t size = 0;  ///< in bytes; 0 if not known
@@ -127,6 +128,7 @@ std::vector<Parameter> parameters_of(const cl::Kernel& kernel,
         constexpr std::string_view nodes = "cellist_node_";
         parameter.is_container = parameter.type.starts_with(nodes);
         if (parameter.is_container) parameter.type.erase(0, nodes.size());
+        parameter.comparable = comparable(parameter.type, definitions);
         if (type == "sampler_t")
             parameter.kind = Arguments::Kind::sampler;
         else if (address == CL_KERNEL_ARG_ADDRESS_LOCAL)
@@ -232,9 +234,9 @@ struct Variant {
             (argument.is_container && argument.type != parameter.type))
             fail(parameter.is_container ? "lists of " + parameter.type : "a buffer",
                  argument.is_container ? "lists of " + argument.type : "a buffer");
-        const std::string given = comparable(argument.type, definitions);
-        const std::string taken = comparable(parameter.type, definitions);
-        if (!given.empty() && !taken.empty() && given != taken)
+        const std::string given =
+            parameter.comparable.empty() ? "" : comparable(argument.type, definitions);
+        if (!given.empty() && given != parameter.comparable)
             fail(parameter.type,
                  argument.type + (argument.kind == Arguments::Kind::memory
                                       ? " (pass Buffer::cl() to reinterpret its elements)"
@@ -285,16 +287,6 @@ Kernel::~Kernel() = default;
 
 const std::string& Kernel::name() const { return impl_->name; }
 
-cl::Event Kernel::enqueue(const Range& range, const Arguments& arguments) {
-    cl::Event event;
-    enqueue(range, arguments, &event);
-    return event;
-}
-
-void Kernel::enqueue_only(const Range& range, const Arguments& arguments) {
-    enqueue(range, arguments, nullptr);
-}
-
 void Kernel::enqueue(const Range& range, const Arguments& arguments, cl::Event* event) {
     Variant& variant =
         impl_->variant(arguments.modes() != 0 ? arguments.modes() : impl_->definitions.modes);
@@ -313,13 +305,14 @@ void Kernel::enqueue(const Range& range, const Arguments& arguments, cl::Event* 
     opencl([&] {
         const cl::CommandQueue& queue = impl_->device->ordered_queue();
         const auto& extents = range.global;
-        if (std::find(extents.begin(), extents.end(), 0u) != extents.end())
-            queue.enqueueMarkerWithWaitList(nullptr, event);
-        else
+        if (std::find(extents.begin(), extents.end(), 0u) != extents.end()) {
+            if (event != nullptr) queue.enqueueMarkerWithWaitList(nullptr, event);
+        } else {
             queue.enqueueNDRangeKernel(
                 variant.kernel, cl::NullRange, nd_range(range.global, range.dimensions),
                 work_group(range, variant.required_work_group, variant.work_group_limit), nullptr,
                 event);
+        }
     });
 }
 

@@ -109,7 +109,7 @@ const ListStorage::Spare* ListStorage::spare() {
     return &*spare_;
 }
 
-void ListStorage::exchange_spare() noexcept {
+void ListStorage::adopt_spare() noexcept {
     std::swap(nodes_, spare_->nodes);
     std::swap(heads_, spare_->heads);
 }
@@ -195,15 +195,15 @@ void ListStorage::clear_heads_and_counters(cl_uint head, std::uint64_t first_wor
     arguments.add(head);
     arguments.add(shards_.cl());
     arguments.add(static_cast<cl_uint>(counter_words));
-    clear_->enqueue_only(Range::padded(std::max(words, counter_words)), arguments);
+    clear_->enqueue(Range::padded(std::max(words, counter_words)), arguments);
 }
 
 void ListStorage::fill_heads(cl_uint value, std::uint64_t first_word, std::uint64_t words) {
     if (words == 0) return;
-    const cl_int code =
+    check(
+        "clEnqueueFillBuffer",
         clEnqueueFillBuffer(device_->ordered_queue()(), heads_.cl()(), &value, sizeof value,
-                            first_word * sizeof value, words * sizeof value, 0, nullptr, nullptr);
-    if (code != CL_SUCCESS) throw OpenClError("clEnqueueFillBuffer", code);
+                            first_word * sizeof value, words * sizeof value, 0, nullptr, nullptr));
 }
 
 void ListStorage::grow_pool(std::uint64_t capacity_nodes, const BuildReport& report) {

@@ -91,8 +91,9 @@ public:
     /// Makes it the first time, and keeps it as long as the pool. Null where the budget or the device
     /// has no room for it.
     [[nodiscard]] const Spare* spare();
-    /// The spare nodes and heads take the place of the pool's, of linked lists, and these become spare.
-    void exchange_spare() noexcept;
+    /// The spare nodes and heads take the place of the pool's, and these become spare: linked lists have
+    /// moved, and nothing else is in the pool.
+    virtual void adopt_spare() noexcept;
     /// The mode in which the lists are read.
     [[nodiscard]] cl_uint mode() const { return mode_; }
     /// Records in the lists.

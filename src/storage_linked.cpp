@@ -82,6 +82,11 @@ void LinkedStorage::reserve(std::uint64_t total, std::uint64_t) {
     if (options_.overflow == Overflow::grow && capacity_nodes_ < total) allocate_pool(total);
 }
 
+void LinkedStorage::adopt_spare() noexcept {
+    ListStorage::adopt_spare();
+    unlinked_ = 0;
+}
+
 std::function<Validation()> LinkedStorage::validate() {
     struct Check {
         Memory reached;

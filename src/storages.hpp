@@ -18,6 +18,7 @@ public:
     std::uint64_t nodes_for(std::uint64_t total, std::uint64_t longest,
                             std::uint64_t cells) const override;
     void reserve(std::uint64_t total, std::uint64_t longest) override;
+    void adopt_spare() noexcept override;
 
 private:
     bool finish_pass() override;

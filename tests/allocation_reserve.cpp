@@ -324,6 +324,9 @@ TEST_CASE("nodes that are reserved and not linked are not stored, and no list le
     for (cl_uint i = 0; i < 100; ++i) plan.add(8, 5);
     REQUIRE(run(lists, plan).report.stored == 500);
     require_sound(lists, 500);
+    lists.sort(&Item::key);
+    require_sound(lists, 500);
+    REQUIRE(run(lists, plan).report.stored == 500);
     Kernel corrupt(device(), source, "link_unlinked", lists);
     Buffer<cl_uint> found(device(), 1);
     found.fill(0);

@@ -69,7 +69,7 @@ public:
             detail::Arguments arguments;
             arguments.add(*this);
             (arguments.add(args), ...);
-            kernel.enqueue_only(range, arguments);
+            kernel.enqueue(range, arguments);
         });
     }
 
@@ -125,7 +125,8 @@ public:
     /// well. Where the budget or the device has no memory for it, lists are sorted as by sort_async().
     ///
     /// Blocks until it is known how long the lists are. The first calls for a member compile kernels.
-    /// Throws Error if links lead in circles; whatever fails, the lists hold what they held.
+    /// Throws Error where links lead in circles and there is a second pool. Whatever fails, sound lists
+    /// hold what they held.
     template <class M>
     cl::Event sort(M T::*member, Order order = Order::ascending) {
         return core_->sort(key_of(member, order), all_nodes);
@@ -153,7 +154,8 @@ public:
     }
 
     /// Sorts without blocking, and without a second pool: each list in its place, by one work-item, which
-    /// takes longer for most lists. Lists whose links lead in circles end as lists without circles.
+    /// takes longer for most lists. For sound lists only: where links lead in circles, it ends, and the
+    /// lists may be anything.
     template <class M>
     cl::Event sort_async(M T::*member, Order order = Order::ascending) {
         return core_->sort_async(key_of(member, order));

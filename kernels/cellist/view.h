@@ -100,8 +100,9 @@ typedef struct cellist_shard {
 
 // What a choice among the records of each cell finds, from 0.
 typedef struct cellist_choice {
-    CELLIST_UINT undecided;  // cells with more records that equal the thresholds than slots for them
-    CELLIST_UINT words;      // of a record's key
+    CELLIST_UINT
+        undecided;       // cells with more records that equal the thresholds than slots for them
+    CELLIST_UINT words;  // of a record's key
 } cellist_choice;
 
 // What a validation finds, from 0; each of its kernels says which of these it counts.
@@ -116,14 +117,16 @@ typedef struct cellist_findings {
 // Classes of lists by their length: up to 16, 32, 64, 128, 256 nodes, and more.
 #define CELLIST_SORT_CLASS_MIN 16u
 #define CELLIST_SORT_CLASSES 6u
+// A sort looks at every other class at most.
+#define CELLIST_SORT_STAGES ((CELLIST_SORT_CLASSES + 1u) / 2u)
 
 // What the kernels that sort find, from 0.
 typedef struct cellist_sort_state {
-    CELLIST_UINT nodes;      // that have their places, of linked lists
-    CELLIST_UINT chunks;     // of all long lists
-    CELLIST_UINT longest;    // nodes of a long list
-    CELLIST_UINT broken;     // lists with links that no build makes
-    CELLIST_UINT longer[4];  // lists that were left by each class
+    CELLIST_UINT nodes;                           // that have their places, of linked lists
+    CELLIST_UINT chunks;                          // of all long lists
+    CELLIST_UINT longest;                         // nodes of a long list
+    CELLIST_UINT broken;                          // lists with links that no build makes
+    CELLIST_UINT longer[CELLIST_SORT_STAGES];     // lists that were left by each class
     CELLIST_UINT in_class[CELLIST_SORT_CLASSES];  // lists that were sorted in work-groups
 } cellist_sort_state;
 
