@@ -277,6 +277,8 @@ std::unique_ptr<ListStorage> make_storage(std::shared_ptr<DeviceState> device,
     const bool fixed = options.storage == Storage::fixed;
     if (options.overflow == Overflow::keep_nearest && !fixed)
         throw Error("Overflow::keep_nearest needs Storage::fixed");
+    if (options.overflow != Overflow::keep_nearest && !options.nearest_by.empty())
+        throw Error("nearest_by needs Overflow::keep_nearest");
     if (options.overflow != Overflow::grow &&
         !(fixed ? options.slots.has_value() : options.capacity_nodes.has_value()))
         throw Error(std::string("an Overflow other than grow needs ") +

@@ -52,7 +52,7 @@ struct ListsOptions {
     /// Slots for each cell in Storage::fixed at first: 4 under Overflow::grow, which raises it to the
     /// longest list; the other policies need it.
     std::optional<std::uint32_t> slots = {};
-    /// The scalar member that Overflow::keep_nearest ranks by, e.g. "depth".
+    /// The scalar member that Overflow::keep_nearest ranks by, e.g. "depth"; for no other policy.
     std::string nearest_by = {};
     /// Device memory that heads, nodes and counters may take together.
     std::uint64_t budget_bytes = std::numeric_limits<std::uint64_t>::max();
