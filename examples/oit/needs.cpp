@@ -94,7 +94,7 @@ std::string defines_of(const Frame& frame, const Needs& needs) {
     const Quality& quality = frame.quality;
     std::string text;
     constexpr const char* names[] = {"OPAQUE", "OVER", "ADDITIVE", "MULTIPLICATIVE",
-                                     "ENTER",  "USER", "LEAVE"};
+                                     "ABSORB", "USER", "LEAVE"};
     for (std::uint32_t i = 0; i < std::size(names); ++i)
         text += define(std::string("OIT_") + names[i], i);
     text += define("OIT_FLOOR", static_cast<std::uint32_t>(Paint::floor));
