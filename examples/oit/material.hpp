@@ -10,7 +10,7 @@ enum class Blend : cl_uint {
     opaque,          ///< hides it
     over,            ///< covers the part alpha of it (Porter and Duff 1984)
     additive,        ///< adds alpha * colour to it
-    multiplicative,  ///< tints it: multiplies it by colour, to the part alpha
+    multiplicative,  ///< filters it: multiplies it by the tint, to the part alpha
     absorb,          ///< front faces enter and back faces leave a medium (Beer-Lambert)
     user,            ///< the function that the user wrote
 };
@@ -20,7 +20,7 @@ enum class Paint : cl_uint { shaded, floor };
 
 /// A surface. Colours are linear.
 struct Material {
-    /// Under Blend::absorb, the tints are the part of light that passes through a unit of length.
+    /// The front's tint under Blend::absorb is the light that passes through a unit of length.
     cl_float front_tint[3];
     cl_float back_tint[3];
     cl_float alpha;  ///< opacity, 0 to 1

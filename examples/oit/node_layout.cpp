@@ -120,4 +120,40 @@ double NodeLayout::depth_of(std::uint32_t key, const Needs& needs) const {
     return least + part * (greatest - least);
 }
 
+double NodeLayout::depth_resolution(double depth, const Needs& needs) const {
+    const double of_float = oit::depth_resolution * depth;
+    const std::uint32_t bits = depth_bits(format);
+    // 1 / depth is rounded once more.
+    if (bits == 0) return depth_scale == DepthScale::reversed ? 1.125 * of_float : of_float;
+    const auto least = static_cast<double>(needs.least_depth);
+    const auto greatest = static_cast<double>(needs.greatest_depth);
+    const double steps = static_cast<double>((1U << bits) - 1);
+    if (depth_scale == DepthScale::linear) {
+        // Steps are counted in float, from the least depth.
+        return (greatest - least) / steps * (1 + steps * 0x1p-22) + of_float;
+    }
+    return depth * depth * (1 / least - 1 / greatest) / steps * (1 + steps * 0x1p-22) + of_float;
+}
+
+double NodeLayout::colour_error(const Needs& needs) const {
+    const auto most = static_cast<double>(needs.colour_max);
+    // Half a step of the square root r, at r = 1: (r + h)^2 - r^2.
+    const auto of_root = [&](double steps) { return most * (1 / steps + 0.25 / (steps * steps)); };
+    switch (format) {
+        case NodeFormat::float32:
+            return 0;
+        case NodeFormat::rgba16f:
+            return most * 0x1p-11;
+        case NodeFormat::rgb565_d16:
+            return of_root(31);
+        default:
+            return of_root(255);
+    }
+}
+
+double NodeLayout::alpha_error() const {
+    if (alpha.bits == 0 || alpha.bits == 32) return 0;
+    return alpha.bits == 16 ? 0x1p-12 : 0.5 / 255;
+}
+
 }  // namespace oit

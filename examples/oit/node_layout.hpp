@@ -29,6 +29,11 @@ OIT_DEFINE_NODE(6);
 OIT_DEFINE_NODE(7);
 #undef OIT_DEFINE_NODE
 
+/// Two depths are told apart by the device if they differ by more than this part of the greater
+/// one. The device's depth is off by a factor of at most 1 +- 8 * 2^-24 (see scan.clh); two of them
+/// by twice that.
+inline constexpr double depth_resolution = 16.0 / (1 << 24);
+
 /// Some bits of a word of a node.
 struct NodeField {
     std::uint32_t word = 0;
@@ -50,6 +55,12 @@ struct NodeLayout {
 
     /// The depth in a key. `needs` gives the range of quantised depths.
     [[nodiscard]] double depth_of(std::uint32_t key, const Needs& needs) const;
+    /// How much two depths of up to `depth` differ at least if nodes have them in the right order.
+    [[nodiscard]] double depth_resolution(double depth, const Needs& needs) const;
+    /// How far a channel of a colour in a node is from the fragment's, at most.
+    [[nodiscard]] double colour_error(const Needs& needs) const;
+    /// The same for an opacity.
+    [[nodiscard]] double alpha_error() const;
 };
 
 [[nodiscard]] NodeLayout node_layout(const Quality& quality, const Needs& needs);

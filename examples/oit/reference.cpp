@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "node_layout.hpp"
 #include "reference_blend.hpp"
 #include "reference_raster.hpp"
 #include "reference_shading.hpp"
@@ -17,12 +18,6 @@ namespace {
 using glm::dvec3;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-bool too_close(double a, double b) {
-    // Infinity is the depth of no surface, which is close to nothing.
-    return std::isfinite(a) && std::isfinite(b) &&
-           std::abs(a - b) <= depth_resolution * std::max(a, b);
-}
 
 // Whether the order of two fragments at nearly the same depth matters. A medium of no thickness
 // does nothing, and sums and products can be taken in any order.
@@ -42,6 +37,8 @@ public:
     Painter(const Frame& frame, const ReferenceOptions& options)
         : frame_(frame),
           options_(options),
+          needs_(needs_of(frame)),
+          layout_(node_layout(frame.quality, needs_)),
           samples_(static_cast<std::size_t>(frame.quality.samples)),
           opaque_(frame.pixels() * samples_) {
         reference_.ambiguous.assign(frame.pixels(), false);
@@ -85,6 +82,18 @@ private:
             }
     }
 
+    // Whether nodes may have two depths in the wrong order.
+    [[nodiscard]] bool too_close(double a, double b) const {
+        // Infinity is the depth of no surface, which is close to nothing.
+        return std::isfinite(a) && std::isfinite(b) &&
+               std::abs(a - b) <= layout_.depth_resolution(std::max(a, b), needs_);
+    }
+    // The same for depths that are compared before they are stored.
+    [[nodiscard]] static bool float_too_close(double a, double b) {
+        return std::isfinite(a) && std::isfinite(b) &&
+               std::abs(a - b) <= depth_resolution * std::max(a, b);
+    }
+
     void report(std::size_t triangles) const {
         if (options_.progress)
             options_.progress(static_cast<double>(triangles) / static_cast<double>(triangles_));
@@ -124,7 +133,7 @@ private:
         for (std::size_t s = 0; s < samples_; ++s) {
             if ((cover.coverage >> s & 1) == 0) continue;
             OpaqueSample& sample = opaque_[pixel * samples_ + s];
-            if (too_close(sample.depth, cover.depth) && colour != sample.colour)
+            if (float_too_close(sample.depth, cover.depth) && colour != sample.colour)
                 reference_.ambiguous[pixel] = true;
             if (cover.depth < sample.depth) sample = {cover.depth, colour};
         }
@@ -138,7 +147,7 @@ private:
         for (std::size_t s = 0; s < samples_; ++s) {
             if ((cover.coverage >> s & 1) == 0) continue;
             const double behind = opaque_[pixel * samples_ + s].depth;
-            if (too_close(cover.depth, behind)) reference_.ambiguous[pixel] = true;
+            if (float_too_close(cover.depth, behind)) reference_.ambiguous[pixel] = true;
             if (cover.depth < behind) visible |= 1U << s;
         }
         if (visible == 0) return;
@@ -158,13 +167,16 @@ private:
                                    cover.greatest_depth};
         if (blend == Blend::absorb) {
             fragment.alpha = 1;
+            fragment.colour = to_double(material.front_tint);
             add(pixel, fragment);
             if (gloss == 0) return;
             fragment.blend = Blend::additive;
             tint = dvec3(0);
         }
-        fragment.colour = shading.surface(tint, gloss, normal_of(instance, placed, triangle, cover),
-                                          cover.front, cover.x, cover.y);
+        if (blend != Blend::multiplicative)
+            fragment.colour =
+                shading.surface(tint, gloss, normal_of(instance, placed, triangle, cover),
+                                cover.front, cover.x, cover.y);
         add(pixel, fragment);
     }
 
@@ -230,6 +242,8 @@ private:
 
     const Frame& frame_;
     const ReferenceOptions& options_;
+    Needs needs_;
+    NodeLayout layout_;
     std::size_t samples_;
     std::vector<OpaqueSample> opaque_;
     std::vector<std::pair<std::size_t, ReferenceFragment>> unordered_;

@@ -10,11 +10,6 @@
 
 namespace oit {
 
-/// Two depths are told apart by the device if they differ by more than this part of the greater
-/// one. The device's depth is off by a factor of at most 1 +- 8 * 2^-24 (see scan.clh); two of them
-/// by twice that.
-inline constexpr double depth_resolution = 16.0 / (1 << 24);
-
 struct ReferenceFragment {
     double depth;
     glm::dvec3 colour;
@@ -30,8 +25,8 @@ struct Reference {
     std::vector<glm::dvec3> image;             ///< linear, eye by eye
     std::vector<std::uint64_t> offsets;        ///< pixels + 1 offsets into `fragments`
     std::vector<ReferenceFragment> fragments;  ///< by pixel, nearest first
-    /// Pixels where float cannot tell the order of two fragments that count, or whether a fragment
-    /// is behind the opaque surface.
+    /// Pixels where the nodes' format cannot tell the order of two fragments that count, or float
+    /// whether a fragment is behind the opaque surface.
     std::vector<bool> ambiguous;
 };
 
