@@ -208,6 +208,8 @@ Options parse_options(int count, const char* const* arguments) {
     options.time = read_between("--time", time, -1e6, 1e6, "seconds from -1000000 to 1000000");
     options.frames =
         static_cast<std::uint32_t>(support::read_number("--frames", frames, 1, 1'000'000));
+    if (options.quality.depth_range && options.quality.samples == 1)
+        throw InputError("--depth-range needs several samples: add --samples 2, 4 or 8");
     (void)method_named(options.method);
     return options;
 }

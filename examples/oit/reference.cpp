@@ -228,14 +228,24 @@ private:
             if (too_close(list[i].depth, list[i + 1].depth) && order_matters(list[i], list[i + 1]))
                 reference_.ambiguous[p] = true;
 
+        std::vector<ReferenceLight> lights(
+            samples_, ReferenceLight(glm::length(shading.ray(x, y)), options_));
+        for (std::size_t i = 0; i < layers; ++i) {
+            const bool both = frame_.quality.depth_range && i + 1 < layers &&
+                              list[i].greatest_depth > list[i + 1].least_depth;
+            for (std::size_t s = 0; s < samples_; ++s) {
+                if (both)
+                    lights[s].add_both(list[i], list[i + 1], s);
+                else
+                    lights[s].add(list[i], s);
+            }
+            if (both) ++i;
+        }
         dvec3 sum(0);
         for (std::size_t s = 0; s < samples_; ++s) {
-            ReferenceLight light(glm::length(shading.ray(x, y)), options_);
-            for (std::size_t i = 0; i < layers; ++i)
-                if ((list[i].coverage >> s & 1) != 0) light.add(list[i]);
             const OpaqueSample& behind = opaque_[p * samples_ + s];
-            sum += light.end(std::isinf(behind.depth) ? shading.background(y) : behind.colour,
-                             behind.depth);
+            sum += lights[s].end(std::isinf(behind.depth) ? shading.background(y) : behind.colour,
+                                 behind.depth);
         }
         reference_.image[p] = sum / static_cast<double>(samples_);
     }
