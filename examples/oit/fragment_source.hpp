@@ -40,13 +40,11 @@ public:
     template <class... Uses>
     [[nodiscard]] raster::Pass pass(std::string_view source, const std::string& file_name,
                                     const Uses&... uses) const {
-        return {device_,
-                sampling(),
-                pass_text(source),
-                file_name,
-                cellist::type<OitFrame>,
-                cellist::type<Material>,
-                uses...};
+        return with_node_type(layout_.words, [&]<class Node>(const Node*) {
+            return raster::Pass(device_, sampling(), pass_text(source), file_name,
+                                cellist::type<OitFrame>, cellist::type<Material>,
+                                cellist::type<Node>, uses...);
+        });
     }
 
     /// Enqueues a pass over all transparent fragments; `targets` are those of OIT_TARGET.
@@ -72,12 +70,11 @@ public:
                                                 const std::string& file_name,
                                                 const std::string& name,
                                                 const Uses&... uses) const {
-        return {device_,
-                screen_source(source, file_name),
-                name,
-                cellist::type<raster::View>,
-                cellist::type<OitFrame>,
-                uses...};
+        return with_node_type(layout_.words, [&]<class Node>(const Node*) {
+            return cellist::Kernel(device_, screen_source(source, file_name), name,
+                                   cellist::type<raster::View>, cellist::type<OitFrame>,
+                                   cellist::type<Node>, uses...);
+        });
     }
 
     /// Enqueues such a kernel; `args` are those in front of OIT_SCREEN.
@@ -98,6 +95,10 @@ public:
     [[nodiscard]] const Frame& frame() const { return frame_; }
     [[nodiscard]] const Needs& needs() const { return needs_; }
     [[nodiscard]] const NodeLayout& layout() const { return layout_; }
+    /// Floats for what is blended of a pixel: see screen.clh.
+    [[nodiscard]] std::uint32_t state_floats() const {
+        return oit::state_floats(frame_.quality, needs_);
+    }
     /// Width, height and eyes: a cell for each pixel.
     [[nodiscard]] cellist::Shape shape() const;
     /// The linear image, eye by eye, row by row from the top.

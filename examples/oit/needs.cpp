@@ -90,6 +90,15 @@ Needs needs_of(const Frame& frame) {
     return needs;
 }
 
+std::uint32_t state_floats(const Quality& quality, const Needs& needs) {
+    const std::uint32_t transmittance = needs.transmittance_is_coloured() ? 3 : 1;
+    const std::uint32_t depth = needs.has(Blend::absorb) || needs.has(Blend::user) ? 1 : 0;
+    const std::uint32_t extinction = needs.has(Blend::absorb) ? 3 : 0;
+    const auto lights =
+        quality.resolve == Resolve::per_sample ? 1 : static_cast<std::uint32_t>(quality.samples);
+    return lights * (3 + transmittance + depth + extinction);
+}
+
 std::string defines_of(const Frame& frame, const Needs& needs) {
     const Quality& quality = frame.quality;
     std::string text;
@@ -102,6 +111,7 @@ std::string defines_of(const Frame& frame, const Needs& needs) {
     if (!needs.blend_varies())
         text += define("OIT_ONLY_BLEND", needs.blends == 0 ? 1 : std::countr_zero(needs.blends));
     text += define("OIT_SAMPLES", quality.samples);
+    text += define("OIT_STATE_FLOATS", state_floats(quality, needs));
     if (needs.opaque) text += "#define OIT_HAS_OPAQUE\n";
     if (needs.opacities) text += "#define OIT_HAS_OPACITIES\n";
     if (needs.has(Blend::absorb)) text += "#define OIT_ABSORBS\n";

@@ -32,6 +32,9 @@ struct Needs {
 
 [[nodiscard]] Needs needs_of(const Frame& frame);
 
+/// How many floats hold what is blended of a pixel (see screen.clh).
+[[nodiscard]] std::uint32_t state_floats(const Quality& quality, const Needs& needs);
+
 /// The macros that kernels of this frame are compiled with.
 [[nodiscard]] std::string defines_of(const Frame& frame, const Needs& needs);
 

@@ -1,16 +1,16 @@
-// Pass: the colour of each sample's opaque surface, from the triangle that owns it.
+// Pass: the colour of each sample's opaque surface, from the piece that owns it.
 #define RASTER_TARGET                                                                              \
     global const uint *owners, global const uint *depth_bits, global float4 *colour,               \
         const OitFrame kernel_frame, global const Material *materials, global const float *normals
 #define RASTER_TARGET_PASS owners, depth_bits, colour, kernel_frame, materials, normals
 
 static inline void raster_emit(RASTER_TARGET, const View* view,
-                               global const RasterInstance* instance, uint triangle,
+                               global const RasterInstance* instance, uint piece,
                                const RasterFragment* sample) {
     const size_t pixel = oit_pixel_index(view, instance->eye, sample->x, sample->y);
     uint owned = 0;
     for (int s = 0; s < OIT_SAMPLES; ++s)
-        if (sample->coverage >> s & 1 && owners[pixel * OIT_SAMPLES + s] == triangle &&
+        if (sample->coverage >> s & 1 && owners[pixel * OIT_SAMPLES + s] == piece &&
             depth_bits[pixel * OIT_SAMPLES + s] == as_uint(sample->depth))
             owned |= 1u << s;
     if (owned == 0) return;

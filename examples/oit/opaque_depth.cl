@@ -4,7 +4,7 @@
 #define RASTER_TARGET_PASS depth_bits
 
 static inline void raster_emit(RASTER_TARGET, const View* view,
-                               global const RasterInstance* instance, uint triangle,
+                               global const RasterInstance* instance, uint piece,
                                const RasterFragment* sample) {
     const size_t pixel = oit_pixel_index(view, instance->eye, sample->x, sample->y);
     for (int s = 0; s < OIT_SAMPLES; ++s)

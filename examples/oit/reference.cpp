@@ -224,9 +224,10 @@ private:
                   });
         const std::size_t layers =
             std::min<std::size_t>(list.size(), frame_.quality.layers.value_or(~0U));
-        for (std::size_t i = 0; i < layers && i + 1 < list.size(); ++i)
-            if (too_close(list[i].depth, list[i + 1].depth) && order_matters(list[i], list[i + 1]))
-                reference_.ambiguous[p] = true;
+        for (std::size_t i = 0; i < layers; ++i)
+            for (std::size_t j = i + 1; j < list.size() && too_close(list[i].depth, list[j].depth);
+                 ++j)
+                if (order_matters(list[i], list[j])) reference_.ambiguous[p] = true;
 
         std::vector<ReferenceLight> lights(
             samples_, ReferenceLight(glm::length(shading.ray(x, y)), options_));

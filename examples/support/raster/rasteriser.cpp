@@ -236,7 +236,8 @@ std::vector<RasterBatch> Projection::triangle_batches(std::span<const std::size_
             const Geometry::Part& part = geometry_.part(meshes_.at(i));
             append_batches(batches, eye * meshes_.size() + i, part.first_triangle, part.triangles);
         }
-    checked_count(batches.size() * batch_size, "triangles in its instances");
+    // Pieces of triangles are numbered, 8 for each.
+    checked_count(8 * batches.size() * batch_size, "pieces of triangles in its instances");
     return batches;
 }
 

@@ -38,7 +38,7 @@ inline Coverage coverage_of(const support::Mesh& mesh, const raster::View& view,
 #define RASTER_TARGET volatile global uint* counts, global float* depths
 #define RASTER_TARGET_PASS counts, depths
 static inline void raster_emit(RASTER_TARGET, const View* view,
-                               global const RasterInstance* instance, uint triangle,
+                               global const RasterInstance* instance, uint piece,
                                const RasterFragment* fragment) {
     const uint pixel = fragment->y * view->width + fragment->x;
     for (int s = 0; s < RASTER_SAMPLES; ++s)
