@@ -113,7 +113,7 @@ FragmentSource::FragmentSource(const cellist::Device& device, const Frame& frame
     if (needs_.opacities) opacities_.emplace(device, opacities_of(frame.scene));
     if (needs_.opaque) opaque_ = std::make_unique<Opaque>(*this);
     if (resolves_samples(frame.quality)) {
-        samples_.emplace(device, frame.pixels() * samples_of(frame.quality));
+        sample_image_.emplace(device, frame.pixels() * samples_of(frame.quality));
         average_.emplace(device,
                          cellist::Source{.text = joined({defines_, kernels::average_cl}),
                                          .file_name = "average.cl"},
@@ -143,7 +143,7 @@ void FragmentSource::prepare() {
 
 void FragmentSource::finish() {
     if (average_)
-        average_->run(cellist::Range::padded(image_.size(), 64), *samples_, image_,
+        average_->run(cellist::Range::padded(image_.size(), 64), *sample_image_, image_,
                       static_cast<cl_uint>(image_.size()));
 }
 
@@ -174,7 +174,7 @@ std::uint64_t FragmentSource::device_bytes() const {
                           transparent_.device_bytes() + materials_.size() * sizeof(Material) +
                           image_.size() * sizeof(cl_float4);
     if (opacities_) bytes += opacities_->size() * sizeof(cl_float);
-    if (samples_) bytes += samples_->size() * sizeof(cl_float4);
+    if (sample_image_) bytes += sample_image_->size() * sizeof(cl_float4);
     if (opaque_)
         bytes += opaque_->triangles.device_bytes() + opaque_->depth_bits.size() * sizeof(cl_uint) +
                  opaque_->owners.size() * sizeof(cl_uint) +

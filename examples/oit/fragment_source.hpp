@@ -80,7 +80,7 @@ public:
     /// Enqueues such a kernel; `args` are those in front of OIT_SCREEN.
     template <class... Args>
     void run_on_screen(cellist::Kernel& kernel, const Args&... args) {
-        const cellist::Buffer<cl_float4>& image = samples_ ? *samples_ : image_;
+        const cellist::Buffer<cl_float4>& image = sample_image_ ? *sample_image_ : image_;
         if (opaque_) kernel
             .run(screen_, args..., constants_, projection_.views(), opaque_->depth_bits,
                  opaque_->colour, image);
@@ -98,6 +98,10 @@ public:
     /// Floats for what is blended of a pixel: see screen.clh.
     [[nodiscard]] std::uint32_t state_floats() const {
         return oit::state_floats(frame_.quality, needs_);
+    }
+    /// Of all pixels of all eyes.
+    [[nodiscard]] std::size_t samples() const {
+        return frame_.pixels() * static_cast<std::size_t>(frame_.quality.samples);
     }
     /// Width, height and eyes: a cell for each pixel.
     [[nodiscard]] cellist::Shape shape() const;
@@ -128,8 +132,6 @@ private:
     [[nodiscard]] std::string pass_text(std::string_view source) const;
     [[nodiscard]] cellist::Source screen_source(std::string_view source,
                                                 const std::string& file_name) const;
-    [[nodiscard]] std::size_t samples() const;
-    [[nodiscard]] cellist::Range screen() const;
 
     const cellist::Device& device_;
     const Frame& frame_;
@@ -146,7 +148,8 @@ private:
     std::unique_ptr<Opaque> opaque_;
     cellist::Range screen_;
     cellist::Buffer<cl_float4> image_;
-    std::optional<cellist::Buffer<cl_float4>> samples_;  ///< of each pixel, with per-sample resolve
+    std::optional<cellist::Buffer<cl_float4>>
+        sample_image_;  ///< of each pixel, with per-sample resolve
     std::optional<cellist::Kernel> average_;
 };
 

@@ -13,23 +13,24 @@ bool picks_nearest(const Quality& quality) {
     return quality.layers && *quality.layers <= nearest_max;
 }
 
-std::string resolve_text(const Quality& quality) {
+ListReader blending_reader(const Quality& quality) {
     const std::string nearest =
         picks_nearest(quality) ? "#define OIT_NEAREST " + std::to_string(*quality.layers) + "\n"
                                : std::string();
-    return nearest + std::string(kernels::lists_cl);
+    return {nearest + std::string(kernels::lists_cl), "lists.cl", "oit_resolve_lists"};
 }
 
 template <class Node>
 class ListMethod : public Method {
 public:
-    ListMethod(FragmentSource& source, const cellist::ListsOptions& options)
+    ListMethod(FragmentSource& source, const cellist::ListsOptions& options,
+               const ListReader& reader, bool sorts)
         : source_(source),
-          sorts_(!picks_nearest(source.frame().quality)),
+          sorts_(sorts),
           fragments_(source.device(), source.shape(), options),
           pass_(source.pass(kernels::lists_cl, "lists.cl", fragments_)),
-          resolve_(source.screen_kernel(resolve_text(source.frame().quality), "lists.cl",
-                                        "oit_resolve_lists", fragments_)) {}
+          resolve_(source.screen_kernel(reader.text, reader.file_name, reader.kernel, fragments_)) {
+    }
 
     void store() override {
         fragments_.build([&] { source_.draw(pass_, fragments_); });
@@ -63,11 +64,15 @@ private:
 }  // namespace
 
 std::unique_ptr<Method> make_list_method(FragmentSource& source,
-                                         const cellist::ListsOptions& options) {
-    return with_node_type(source.layout().words,
-                          [&]<class Node>(const Node*) -> std::unique_ptr<Method> {
-                              return std::make_unique<ListMethod<Node>>(source, options);
-                          });
+                                         const cellist::ListsOptions& options,
+                                         std::optional<ListReader> reader) {
+    const Quality& quality = source.frame().quality;
+    const bool sorts = reader || !picks_nearest(quality);
+    if (!reader) reader = blending_reader(quality);
+    return with_node_type(
+        source.layout().words, [&]<class Node>(const Node*) -> std::unique_ptr<Method> {
+            return std::make_unique<ListMethod<Node>>(source, options, *reader, sorts);
+        });
 }
 
 }  // namespace oit

@@ -84,6 +84,31 @@ TEST_CASE("every method gives the same bits every time, and no colour that is no
     }
 }
 
+// What an approximation makes of a single layer is exact, and of many it is near the truth.
+TEST_CASE("approximations are exact where there is one layer, and near where there are more") {
+    for (const oit::MethodInfo& method : oit::methods()) {
+        if (method.exact) continue;
+        for (const int samples : {1, 4}) {
+            INFO(method.name << ", " << samples << " samples");
+            const oit::Scene many = knots(Blend::over);
+            const auto psnr = [&](const oit::Scene& scene, bool single) {
+                const oit::Frame frame = frame_of(scene, {.samples = samples});
+                oit::Renderer renderer(device(), frame, method);
+                renderer.draw();
+                oit::Reference reference = oit::draw_reference(frame);
+                std::vector<cl_float4> image = renderer.image();
+                for (std::size_t p = 0; single && p < image.size(); ++p)
+                    if (reference.offsets[p + 1] - reference.offsets[p] > 1)
+                        for (int c = 0; c < 3; ++c)
+                            image[p].s[c] = static_cast<cl_float>(reference.image[p][c]);
+                return oit::compare(reference, image, {}).psnr_db;
+            };
+            CHECK(psnr(many, true) > 80);
+            CHECK(psnr(many, false) > 22);
+        }
+    }
+}
+
 TEST_CASE("blending that ends early is within its bound") {
     const oit::Scene scene = knots(Blend::over);
     const oit::Reference reference = oit::draw_reference(frame_of(scene));
