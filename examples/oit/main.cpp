@@ -16,6 +16,7 @@
 #include "reference.hpp"
 #include "renderer.hpp"
 #include "report.hpp"
+#include "scenes.hpp"
 
 namespace {
 
@@ -26,12 +27,14 @@ void check_output_paths(const oit::Options& options) {
     if (!options.json.empty()) support::check_image_path(options.json);
 }
 
-// The largest buffers of a frame: image and opaque colour with 16 bytes a pixel.
+// The largest buffers of a frame: image and opaque colour with 16 bytes a sample.
 void check_size(const oit::Options& options, const cellist::Device& device) {
     const std::string size =
         "--size " + std::to_string(options.width) + "x" + std::to_string(options.height);
-    const std::uint64_t bytes =
-        16 * static_cast<std::uint64_t>(options.width) * static_cast<std::uint64_t>(options.height);
+    const std::uint64_t bytes = 16 * static_cast<std::uint64_t>(options.width) *
+                                static_cast<std::uint64_t>(options.height) *
+                                static_cast<std::uint64_t>(options.quality.samples) *
+                                (options.eye_separation ? 2 : 1);
     const std::uint64_t limit = device.info().max_allocation_bytes;
     if (bytes > limit)
         throw InputError(size + " needs an image of " + std::to_string(bytes) +
@@ -42,14 +45,44 @@ void check_size(const oit::Options& options, const cellist::Device& device) {
                          " pixels");
 }
 
-oit::Frame make_frame(const oit::Options& options, const support::Mesh& mesh) {
-    oit::Frame frame{
-        .mesh = mesh,
-        .view = support::frame_unit_sphere(options.orbit, options.width, options.height),
-        .look = oit::studio_look(options.alpha, oit::floor_height_under(mesh)),
-        .layers = options.layers};
-    if (options.opaque_floor) frame.floor = oit::make_floor(frame.look);
-    return frame;
+void set_blend(oit::Scene& scene, oit::Blend blend) {
+    for (oit::Material& material : scene.materials)
+        if (material.blend != static_cast<cl_uint>(oit::Blend::opaque))
+            material.blend = static_cast<cl_uint>(blend);
+}
+
+oit::Scene make_scene(const oit::Options& options) {
+    oit::Scene scene;
+    if (const oit::SceneInfo* info = oit::find_scene(options.scene)) {
+        scene = info->make(options.alpha);
+    } else {
+        support::Mesh mesh = support::load_mesh(options.scene);
+        support::fit_to_unit_sphere(mesh);
+        scene = oit::scene_of(std::move(mesh), options.alpha);
+    }
+    if (options.blend) set_blend(scene, *options.blend);
+    return scene;
+}
+
+std::vector<raster::View> make_views(const oit::Options& options) {
+    if (options.eye_separation)
+        return support::frame_unit_sphere(options.orbit, options.width, options.height,
+                                          *options.eye_separation);
+    return {support::frame_unit_sphere(options.orbit, options.width, options.height)};
+}
+
+// Rows of all eyes side by side.
+std::vector<cl_float4> side_by_side(const std::vector<cl_float4>& image, const oit::Frame& frame) {
+    const auto width = static_cast<std::size_t>(frame.width());
+    const auto height = static_cast<std::size_t>(frame.height());
+    std::vector<cl_float4> rows;
+    for (std::size_t y = 0; y < height; ++y)
+        for (std::size_t eye = 0; eye < frame.views.size(); ++eye) {
+            const auto row =
+                image.begin() + static_cast<std::ptrdiff_t>((eye * height + y) * width);
+            rows.insert(rows.end(), row, row + static_cast<std::ptrdiff_t>(width));
+        }
+    return rows;
 }
 
 double median(std::vector<double> values) {
@@ -84,8 +117,8 @@ oit::Comparison compare_with_reference(const oit::Frame& frame, const oit::Rende
                                        const std::vector<cl_float4>& image) {
     support::Progress progress("reference");
     const oit::Reference reference =
-        oit::draw_reference(frame, [&](double part) { progress.update(part); });
-    return oit::compare(reference, image, renderer.fragments().download());
+        oit::draw_reference(frame, {.progress = [&](double part) { progress.update(part); }});
+    return oit::compare(reference, image, renderer.method().depths());
 }
 
 void run(const oit::Options& options) {
@@ -94,27 +127,33 @@ void run(const oit::Options& options) {
                                                           : cellist::Device::choose(options.device);
     check_size(options, device);
 
-    support::Mesh mesh = support::load_mesh(options.mesh);
-    support::fit_to_unit_sphere(mesh);
-    const oit::Frame frame = make_frame(options, mesh);
-    oit::Renderer renderer(device, frame);
+    oit::Scene scene = make_scene(options);
+    const std::uint64_t triangles = scene.triangles();
+    if (options.opaque_floor) oit::add_floor(scene);
+    const oit::Frame frame{.scene = scene,
+                           .views = make_views(options),
+                           .time = options.time,
+                           .quality = options.quality,
+                           .blend_function = options.blend_function};
+    oit::Renderer renderer(device, frame, oit::method_named(options.method));
 
     oit::Report report;
     report.options = options;
     report.device = device.info().name;
     report.driver = device.info().driver;
-    report.triangles = mesh.triangles.size();
-    report.drops = mesh.drops;
-    report.mesh_ends_within_line = mesh.ends_within_line;
+    report.triangles = triangles;
+    report.drops = scene.models.front().mesh.drops;
+    report.mesh_ends_within_line = scene.models.front().mesh.ends_within_line;
+    report.node_bytes = 4 * renderer.layout().words;
+    report.colour_max = renderer.needs().colour_max;
     report.times = draw_frames(renderer, options.frames);
     const std::vector<cl_float4> image = renderer.image();
-    support::write_png(options.out, image, options.width, options.height);
+    report.pixels_nan = oit::count_nan(image);
+    support::write_png(options.out, side_by_side(image, frame),
+                       options.width * static_cast<int>(frame.views.size()), options.height);
 
-    const cellist::Lengths lengths = renderer.fragments().lengths();
-    report.fragments = lengths.total;
-    report.cells_nonempty = lengths.nonempty_cells;
-    report.longest_list = lengths.longest;
-    report.pool_bytes = renderer.fragments().pool_bytes();
+    report.lengths = renderer.method().lengths();
+    report.method_bytes = renderer.method().device_bytes();
     report.device_bytes = renderer.device_bytes();
     if (options.reference) report.comparison = compare_with_reference(frame, renderer, image);
     if (!options.json.empty()) oit::write_json(report, options.json);

@@ -2,16 +2,23 @@
 
 #include <charconv>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
+#include "command_line.hpp"
 #include "input_error.hpp"
+#include "method.hpp"
+#include "scenes.hpp"
 
 namespace oit {
 namespace {
 
 using support::InputError;
+using support::refuse;
 
 // The whole text as a number, or nothing.
 template <class T>
@@ -20,6 +27,14 @@ std::optional<T> parse(std::string_view text) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size()) return {};
     return value;
+}
+
+// A number between bounds that belong to it.
+double read_between(const std::string& option, const std::string& text, double least, double most,
+                    const std::string& expected) {
+    const auto value = parse<double>(text);
+    if (!value || !(*value >= least && *value <= most)) refuse(option, text, expected);
+    return *value;
 }
 
 void read_size(const std::string& text, Options& options) {
@@ -40,19 +55,12 @@ void read_size(const std::string& text, Options& options) {
     options.height = static_cast<int>(*height);
 }
 
-void read_alpha(const std::string& text, Options& options) {
-    const auto alpha = parse<double>(text);
-    if (!alpha || !(*alpha >= 0 && *alpha <= 1))
-        throw InputError("--alpha " + text + ": expected a number from 0 to 1");
-    options.alpha = static_cast<float>(*alpha);
-}
-
 void read_layers(const std::string& text, Options& options) {
     if (text == "all") return;
     const auto layers = parse<long long>(text);
     if (!layers || *layers < 1 || *layers > 0xFFFFFFFF)
-        throw InputError("--layers " + text + ": expected 'all' or a number from 1 to 4294967295");
-    options.layers = static_cast<std::uint32_t>(*layers);
+        refuse("--layers", text, "'all' or a number from 1 to 4294967295");
+    options.quality.layers = static_cast<std::uint32_t>(*layers);
 }
 
 void read_view(const std::string& text, Options& options) {
@@ -62,72 +70,147 @@ void read_view(const std::string& text, Options& options) {
                                ? std::nullopt
                                : parse<double>(std::string_view(text).substr(comma + 1));
     if (!azimuth || !elevation || !std::isfinite(*azimuth) || !std::isfinite(*elevation))
-        throw InputError("--view " + text +
-                         ": expected AZIMUTH,ELEVATION in degrees, such as 25,8");
+        refuse("--view", text, "AZIMUTH,ELEVATION in degrees, such as 25,8");
     if (std::abs(*elevation) > 90)
         throw InputError("--view " + text + ": the elevation lies between -90 and 90");
     options.orbit = {.azimuth_degrees = std::fmod(*azimuth, 360.0),
                      .elevation_degrees = *elevation};
 }
 
-void read_frames(const std::string& text, Options& options) {
-    const auto frames = parse<long long>(text);
-    if (!frames || *frames < 1 || *frames > 1'000'000)
-        throw InputError("--frames " + text + ": expected a number from 1 to 1000000");
-    options.frames = static_cast<std::uint32_t>(*frames);
+void read_samples(const std::string& text, Options& options) {
+    const auto samples = parse<int>(text);
+    if (!samples || (*samples != 1 && *samples != 2 && *samples != 4 && *samples != 8))
+        refuse("--samples", text, "1, 2, 4 or 8");
+    options.quality.samples = *samples;
+}
+
+void read_resolve(const std::string& text, Options& options) {
+    if (text != "pixel" && text != "sample") refuse("--resolve", text, "pixel or sample");
+    options.quality.resolve = text == "pixel" ? Resolve::per_pixel : Resolve::per_sample;
+}
+
+void read_format(const std::string& text, Options& options) {
+    std::string names;
+    for (const NodeFormatName& entry : node_formats) {
+        names += (names.empty() ? "" : ", ") + std::string(entry.name);
+        if (entry.name != text) continue;
+        options.quality.format = entry.format;
+        return;
+    }
+    refuse("--format", text, "one of " + names);
+}
+
+void read_depth_scale(const std::string& text, Options& options) {
+    if (text != "linear" && text != "reversed") refuse("--depth-scale", text, "linear or reversed");
+    options.quality.depth_scale = text == "linear" ? DepthScale::linear : DepthScale::reversed;
+}
+
+// A kind of blending, or a file with a function.
+void read_blend(const std::string& text, Options& options) {
+    constexpr std::pair<std::string_view, Blend> kinds[] = {
+        {"over", Blend::over},
+        {"additive", Blend::additive},
+        {"multiplicative", Blend::multiplicative},
+        {"absorb", Blend::absorb},
+    };
+    if (text.empty()) return;
+    for (const auto& [name, blend] : kinds)
+        if (text == name) {
+            options.blend = blend;
+            return;
+        }
+    std::ifstream file(text, std::ios::binary);
+    std::error_code error;
+    if (!file || std::filesystem::is_directory(text, error))
+        refuse("--blend", text,
+               "over, additive, multiplicative, absorb, or a file with an OpenCL C function");
+    options.blend = Blend::user;
+    options.blend_function = {{std::istreambuf_iterator<char>(file), {}}, text};
+}
+
+std::string names_of_tables() {
+    std::string text = "Methods:\n";
+    const auto line = [&](std::string_view name, std::string_view summary) {
+        text += "  " + std::string(name) +
+                std::string(name.size() < 24 ? 24 - name.size() : 1, ' ') + std::string(summary) +
+                "\n";
+    };
+    for (const MethodInfo& info : methods()) line(info.name, info.summary);
+    text += "Scenes:\n";
+    for (const SceneInfo& info : scenes()) line(info.name, info.summary);
+    return text;
 }
 
 }  // namespace
 
 Options parse_options(int count, const char* const* arguments) {
     Options options;
-    std::string mesh, size = "1280x720", alpha = "0.35", layers = "all", view = "25,8";
-    std::string out = options.out.string(), json, frames = "5";
-    CLI::App app{"Draws a mesh with order-independent transparency, through per-pixel lists.",
-                 "cellist-oit"};
-    app.add_option("mesh", mesh, "mesh that Assimp reads: OBJ, PLY, STL, glTF, ...")
-        ->type_name("MESH");
-    app.add_option("--size", size, "image size in pixels")->type_name("WxH")->capture_default_str();
-    app.add_option("--alpha", alpha, "opacity of the surfaces, 0 to 1")
-        ->type_name("A")
-        ->capture_default_str();
-    app.add_option("--layers", layers, "nearest layers to blend")
-        ->type_name("K|all")
-        ->capture_default_str();
-    app.add_option("--view", view, "direction to look from, in degrees")
-        ->type_name("AZIMUTH,ELEVATION")
-        ->capture_default_str();
-    app.add_flag("--opaque-floor", options.opaque_floor, "stand the mesh on an opaque floor");
+    std::string size = "1280x720", alpha = "0.35", layers = "all", view = "25,8", samples = "1",
+                resolve = "pixel", format = "float", depth_scale = "linear", epsilon = "0", eyes,
+                time = "0", blend, out = options.out.string(), json, frames = "5";
+    CLI::App app{"Draws a mesh or a scene with order-independent transparency.", "cellist-oit"};
+    const auto add = [&](const char* name, std::string& value, const char* what, const char* type) {
+        CLI::Option* option = app.add_option(name, value, what)->type_name(type);
+        if (!value.empty()) option->capture_default_str();
+    };
+    add("scene", options.scene, "mesh that Assimp reads (OBJ, PLY, STL, glTF, ...), or a scene",
+        "MESH|SCENE");
+    add("--method", options.method, "how the fragments become an image", "M");
+    add("--size", size, "image size in pixels", "WxH");
+    add("--alpha", alpha, "opacity of the surfaces, 0 to 1", "A");
+    add("--blend", blend,
+        "how surfaces blend: over, additive, multiplicative, absorb, or a file with a function",
+        "KIND|FILE");
+    add("--layers", layers, "nearest layers to blend", "K|all");
+    add("--epsilon", epsilon, "stop blending where no more than this part of the light passes",
+        "E");
+    add("--samples", samples, "samples of a pixel: 1, 2, 4 or 8", "N");
+    add("--resolve", resolve, "where samples are blended: pixel or sample", "WHERE");
+    app.add_flag("--depth-range", options.quality.depth_range,
+                 "blend surfaces that meet within a pixel by their least and greatest depths");
+    add("--format", format, "colour and depth of fragments", "F");
+    add("--depth-scale", depth_scale, "what 16 and 24 bits of depth divide: linear or reversed",
+        "S");
+    add("--view", view, "direction to look from, in degrees", "AZIMUTH,ELEVATION");
+    add("--stereo", eyes, "two eyes, this far apart; the scene has radius 1", "DISTANCE");
+    add("--time", time, "of an animated scene, in seconds", "T");
+    app.add_flag("--opaque-floor", options.opaque_floor, "stand the scene on an opaque floor");
     app.add_flag("--reference", options.reference,
                  "compare with a rendering in double precision on the CPU");
-    app.add_option("--out", out, "picture to write")->type_name("FILE.png")->capture_default_str();
-    app.add_option("--json", json, "write the figures to this file")->type_name("FILE");
-    app.add_option(
-           "--device", options.device,
-           "index or part of the name of the device; else CELLIST_DEVICE, a GPU, or the first")
-        ->type_name("D");
-    app.add_option("--frames", frames, "timed frames, after one that is not; times are medians")
-        ->type_name("N")
-        ->capture_default_str();
-    try {
-        app.parse(count, arguments);
-    } catch (const CLI::CallForHelp&) {
+    add("--out", out, "picture to write", "FILE.png");
+    add("--json", json, "write the figures to this file", "FILE");
+    add("--device", options.device,
+        "index or part of the name of the device; else CELLIST_DEVICE, a GPU, or the first", "D");
+    add("--frames", frames, "timed frames, after one that is not; times are medians", "N");
+    app.footer(names_of_tables());
+    if (const auto help = support::parse_command_line(app, count, arguments)) {
         options.help = true;
-        options.help_text = app.help();
+        options.help_text = *help;
         return options;
-    } catch (const CLI::ParseError& error) {
-        const std::string text = error.what();
-        throw InputError(text.substr(0, text.find('\n')) + " (see --help)");
     }
-    if (mesh.empty()) throw InputError("no mesh given (see --help)");
-    options.mesh = mesh;
+    if (options.scene.empty()) throw InputError("no mesh or scene given (see --help)");
     options.out = out;
     options.json = json;
     read_size(size, options);
-    read_alpha(alpha, options);
+    const auto alpha_value = read_between("--alpha", alpha, 0, 1, "a number from 0 to 1");
+    options.alpha = static_cast<float>(alpha_value);
+    read_blend(blend, options);
     read_layers(layers, options);
+    options.quality.epsilon =
+        static_cast<float>(read_between("--epsilon", epsilon, 0, 1, "a number from 0 to 1"));
+    read_samples(samples, options);
+    read_resolve(resolve, options);
+    read_format(format, options);
+    read_depth_scale(depth_scale, options);
     read_view(view, options);
-    read_frames(frames, options);
+    if (!eyes.empty())
+        options.eye_separation = read_between("--stereo", eyes, 0, 1, "a distance from 0 to 1");
+    options.time = read_between("--time", time, -1e6, 1e6, "seconds from -1000000 to 1000000");
+    options.frames =
+        static_cast<std::uint32_t>(support::read_number("--frames", frames, 1, 1'000'000));
+    if (options.quality.depth_range && options.quality.samples == 1)
+        throw InputError("--depth-range needs several samples: add --samples 2, 4 or 8");
+    (void)method_named(options.method);
     return options;
 }
 

@@ -6,18 +6,24 @@
 #include <string>
 
 #include "camera.hpp"
+#include "frame.hpp"
 
 namespace oit {
 
 /// What the command line asks for.
 struct Options {
-    std::filesystem::path mesh;
+    std::string scene;  ///< a mesh file, or the name of a computed scene
+    std::string method = "linked";
     int width = 1280;
     int height = 720;
     float alpha = 0.35F;
-    std::optional<std::uint32_t> layers = {};  ///< none means all
     support::Orbit orbit{.azimuth_degrees = 25, .elevation_degrees = 8};
+    std::optional<double> eye_separation = {};  ///< for two eyes
+    double time = 0;                            ///< of the scene, in seconds
     bool opaque_floor = false;
+    Quality quality = {};
+    std::optional<Blend> blend = {};  ///< of all transparent surfaces; else the scene decides
+    std::optional<BlendFunction> blend_function = {};
     bool reference = false;
     std::filesystem::path out = "oit.png";
     std::filesystem::path json = {};
@@ -27,7 +33,8 @@ struct Options {
     std::string help_text = {};
 };
 
-/// Reads and checks the command line. Throws InputError where an argument cannot be used.
+/// Reads and checks the command line, and the file of a blend function. Throws InputError where an
+/// argument cannot be used.
 [[nodiscard]] Options parse_options(int count, const char* const* arguments);
 
 }  // namespace oit

@@ -39,6 +39,14 @@ std::string dropped_text(const support::MeshDrops& drops) {
     return text.empty() ? "" : " (dropped: " + text + ")";
 }
 
+// What a blend that ends early leaves out, at most: each channel, linear. What is added on top of
+// what passes is not bounded by it.
+std::string early_end_text(const Report& report) {
+    const double bound = static_cast<double>(report.options.quality.epsilon) *
+                         static_cast<double>(report.colour_max);
+    return "linear colours off by " + fixed(255 * bound, 4) + " / 255 at most";
+}
+
 void print_comparison(const Comparison& c, std::ostream& out) {
     const auto line = [&out](const std::string& name) -> std::ostream& {
         return out << "  " << std::left << std::setw(18) << name << std::right;
@@ -48,6 +56,7 @@ void print_comparison(const Comparison& c, std::ostream& out) {
     line("over 1/255") << grouped(c.pixels_over) << " of " << grouped(c.pixels) << " pixels, "
                        << grouped(c.pixels_explained)
                        << " explained by depths closer than 2^-20 of each other\n";
+    if (!c.has_depths) return;
     line("fragment counts") << (c.pixels_with_other_count == 0
                                     ? std::string("equal in every pixel")
                                     : "differ in " + grouped(c.pixels_with_other_count) +
@@ -65,22 +74,31 @@ void print(const Report& report, std::ostream& out) {
         return out << "  " << std::left << std::setw(18) << name << std::right;
     };
     const Options& options = report.options;
-    out << "cellist-oit " << options.mesh.filename().string() << ", " << options.width << 'x'
-        << options.height << ", alpha " << options.alpha << ", "
-        << (options.layers ? std::to_string(*options.layers) + " nearest layers" : "all layers")
+    out << "cellist-oit " << std::filesystem::path(options.scene).filename().string() << ", "
+        << options.width << 'x' << options.height << ", alpha " << options.alpha << ", "
+        << (options.quality.layers ? std::to_string(*options.quality.layers) + " nearest layers"
+                                   : "all layers")
         << (options.opaque_floor ? ", opaque floor" : "") << '\n';
     line("device") << report.device << " (driver " << report.driver << ")\n";
+    line("method") << options.method << ", nodes of " << report.node_bytes << " bytes, "
+                   << options.quality.samples
+                   << (options.quality.samples == 1 ? " sample" : " samples") << " a pixel\n";
     line("triangles") << grouped(report.triangles) << dropped_text(report.drops) << '\n';
-    line("fragments") << grouped(report.fragments) << '\n';
-    line("non-empty pixels") << grouped(report.cells_nonempty) << '\n';
-    line("longest list") << grouped(report.longest_list) << '\n';
-    line("memory") << megabytes(report.pool_bytes) << " MB of lists, "
+    if (report.lengths) {
+        line("fragments") << grouped(report.lengths->total) << '\n';
+        line("non-empty pixels") << grouped(report.lengths->nonempty_cells) << '\n';
+        line("longest list") << grouped(report.lengths->longest) << '\n';
+    }
+    line("memory") << megabytes(report.method_bytes) << " MB of lists, "
                    << megabytes(report.device_bytes) << " MB in all\n";
     line("transform") << fixed(report.times.transform_ms, 2) << " ms\n";
     line("raster + insert") << fixed(report.times.raster_insert_ms, 2) << " ms\n";
     line("sort + blend") << fixed(report.times.sort_blend_ms, 2) << " ms\n";
     line("frame") << fixed(report.times.frame_ms, 2) << " ms (median of " << options.frames
                   << ")\n";
+    if (options.quality.epsilon > 0) line("early end") << early_end_text(report) << '\n';
+    if (report.pixels_nan > 0)
+        line("NaN") << grouped(report.pixels_nan) << " pixels, drawn black\n";
     if (report.comparison) print_comparison(*report.comparison, out);
     if (report.mesh_ends_within_line)
         line("note") << "the mesh file ends within a line: it may have been cut off\n";
@@ -92,12 +110,13 @@ void write_json(const Report& report, const std::filesystem::path& path) {
     nlohmann::ordered_json json;
     json["device"] = report.device;
     json["driver"] = report.driver;
-    json["mesh"] = options.mesh.filename().string();
+    json["scene"] = std::filesystem::path(options.scene).filename().string();
+    json["method"] = options.method;
     json["width"] = options.width;
     json["height"] = options.height;
     json["alpha"] = options.alpha;
-    if (options.layers)
-        json["layers"] = *options.layers;
+    if (options.quality.layers)
+        json["layers"] = *options.quality.layers;
     else
         json["layers"] = "all";
     json["view"] = {options.orbit.azimuth_degrees, options.orbit.elevation_degrees};
@@ -108,10 +127,16 @@ void write_json(const Report& report, const std::filesystem::path& path) {
                        {"out_of_range_triangles", report.drops.out_of_range_triangles},
                        {"degenerate_triangles", report.drops.degenerate_triangles},
                        {"points_and_lines", report.drops.points_and_lines}};
-    json["fragments"] = report.fragments;
-    json["cells_nonempty"] = report.cells_nonempty;
-    json["longest_list"] = report.longest_list;
-    json["pool_bytes"] = report.pool_bytes;
+    json["fragments"] = nullptr;
+    if (report.lengths) {
+        json["fragments"] = report.lengths->total;
+        json["cells_nonempty"] = report.lengths->nonempty_cells;
+        json["longest_list"] = report.lengths->longest;
+    }
+    json["samples"] = options.quality.samples;
+    json["node_bytes"] = report.node_bytes;
+    json["pool_bytes"] = report.method_bytes;
+    json["pixels_nan"] = report.pixels_nan;
     json["device_bytes"] = report.device_bytes;
     json["frames"] = options.frames;
     json["time_ms"] = {{"transform", report.times.transform_ms},

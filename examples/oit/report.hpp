@@ -21,11 +21,12 @@ struct Report {
     std::uint64_t triangles = 0;
     support::MeshDrops drops;
     bool mesh_ends_within_line = false;
-    std::uint64_t fragments = 0;
-    std::uint64_t cells_nonempty = 0;
-    std::uint64_t longest_list = 0;
-    std::uint64_t pool_bytes = 0;
+    std::optional<cellist::Lengths> lengths;  ///< of methods that keep all fragments
+    std::uint64_t node_bytes = 0;             ///< of a fragment, without links
+    std::uint64_t method_bytes = 0;           ///< what the method keeps on the device
     std::uint64_t device_bytes = 0;
+    std::uint64_t pixels_nan = 0;
+    float colour_max = 1;  ///< brightest channel of a fragment, at most
     PassTimes times;
     std::optional<Comparison> comparison;
 };

@@ -1,0 +1,185 @@
+#include "fragment_source.hpp"
+
+#include <bit>
+#include <initializer_list>
+#include <limits>
+
+#include "blend_function.hpp"
+#include "oit_kernels.hpp"
+
+namespace oit {
+namespace {
+
+constexpr cl_uint infinity_bits = std::bit_cast<cl_uint>(std::numeric_limits<cl_float>::infinity());
+constexpr cl_uint no_owner = 0xFFFFFFFF;
+
+std::string joined(std::initializer_list<std::string_view> parts) {
+    std::string text;
+    for (const std::string_view part : parts) text.append(part).append("\n");
+    return text;
+}
+
+std::vector<const support::Mesh*> meshes_of(const Scene& scene) {
+    std::vector<const support::Mesh*> meshes;
+    for (const Model& model : scene.models) meshes.push_back(&model.mesh);
+    return meshes;
+}
+
+std::vector<raster::Placed> placed_at(const Scene& scene, double time) {
+    std::vector<raster::Placed> placed;
+    for (const Instance& instance : scene.instances)
+        placed.push_back({.mesh = instance.model,
+                          .to_world = place_at(instance, time),
+                          .tag = static_cast<cl_uint>(instance.material)});
+    return placed;
+}
+
+std::vector<std::size_t> chosen(const Scene& scene, bool opaque) {
+    std::vector<std::size_t> instances;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i)
+        if (scene.is_opaque(scene.instances[i]) == opaque) instances.push_back(i);
+    return instances;
+}
+
+std::vector<cl_float> opacities_of(const Scene& scene) {
+    std::vector<cl_float> opacities;
+    for (const Model& model : scene.models)
+        if (model.opacities.empty())
+            opacities.insert(opacities.end(), model.mesh.positions.size(), 1.0F);
+        else
+            opacities.insert(opacities.end(), model.opacities.begin(), model.opacities.end());
+    return opacities;
+}
+
+OitFrame constants_of(const Frame& frame, const Needs& needs) {
+    return {.look = frame.scene.look,
+            .alpha = needs.alpha,
+            .least_depth = needs.least_depth,
+            .greatest_depth = needs.greatest_depth,
+            .colour_max = needs.colour_max,
+            .epsilon = frame.quality.epsilon};
+}
+
+cellist::Range screen_of(const Frame& frame, std::size_t samples_across) {
+    const auto padded = [](std::size_t side) { return (side + 7) / 8 * 8; };
+    cellist::Range range(padded(static_cast<std::size_t>(frame.width()) * samples_across),
+                         padded(static_cast<std::size_t>(frame.height())), frame.views.size());
+    range.local = {8, 8, 1};
+    return range;
+}
+
+std::size_t samples_of(const Quality& quality) { return static_cast<std::size_t>(quality.samples); }
+
+bool resolves_samples(const Quality& quality) {
+    return quality.samples > 1 && quality.resolve == Resolve::per_sample;
+}
+
+raster::Sampling sampling_of(const Quality& quality) {
+    return {.samples = quality.samples, .depth_range = quality.depth_range};
+}
+
+}  // namespace
+
+FragmentSource::Opaque::Opaque(const FragmentSource& source)
+    : triangles(source.device_, source.projection_, chosen(source.frame_.scene, true)),
+      depth_pass(source.device_, sampling_of(source.frame_.quality),
+                 joined({source.defines_, kernels::shading_clh, kernels::opaque_depth_cl}),
+                 "opaque_depth.cl", cellist::type<OitFrame>),
+      owner_pass(source.device_, sampling_of(source.frame_.quality),
+                 joined({source.defines_, kernels::shading_clh, kernels::opaque_owner_cl}),
+                 "opaque_owner.cl", cellist::type<OitFrame>),
+      colour_pass(source.device_, sampling_of(source.frame_.quality),
+                  joined({source.defines_, kernels::shading_clh, kernels::normal_clh,
+                          kernels::opaque_colour_cl}),
+                  "opaque_colour.cl", cellist::type<OitFrame>, cellist::type<Material>),
+      depth_bits(source.device_, source.frame_.pixels() * samples_of(source.frame_.quality)),
+      owners(source.device_, depth_bits.size()),
+      colour(source.device_, depth_bits.size()) {}
+
+FragmentSource::FragmentSource(const cellist::Device& device, const Frame& frame)
+    : device_(device),
+      frame_(frame),
+      needs_(needs_of(frame)),
+      layout_(node_layout(frame.quality, needs_)),
+      constants_(constants_of(frame, needs_)),
+      defines_(defines_of(frame, needs_) + defines_of(layout_)),
+      setup_(device, sampling_of(frame.quality)),
+      geometry_(device, meshes_of(frame.scene)),
+      projection_(device, setup_, geometry_, placed_at(frame.scene, frame.time), frame.views),
+      transparent_(device, projection_, chosen(frame.scene, false)),
+      materials_(device, frame.scene.materials),
+      screen_(screen_of(frame, resolves_samples(frame.quality) ? samples_of(frame.quality) : 1)),
+      image_(device, frame.pixels()) {
+    if (needs_.opacities) opacities_.emplace(device, opacities_of(frame.scene));
+    if (needs_.opaque) opaque_ = std::make_unique<Opaque>(*this);
+    if (resolves_samples(frame.quality)) {
+        sample_image_.emplace(device, frame.pixels() * samples_of(frame.quality));
+        average_.emplace(device,
+                         cellist::Source{.text = joined({defines_, kernels::average_cl}),
+                                         .file_name = "average.cl"},
+                         "oit_average");
+    }
+    if (frame.blend_function) check_blend_function(device, defines_, *frame.blend_function);
+}
+
+void FragmentSource::move_to(double time) {
+    projection_.move(placed_at(frame_.scene, time), frame_.views);
+}
+
+void FragmentSource::transform() { projection_.transform(); }
+
+void FragmentSource::prepare() {
+    transparent_.bin();
+    if (!opaque_) return;
+    Opaque& o = *opaque_;
+    o.triangles.bin();
+    o.depth_bits.fill(infinity_bits);
+    o.owners.fill(no_owner);
+    o.triangles.draw(o.depth_pass, o.depth_bits);
+    o.triangles.draw(o.owner_pass, o.owners, o.depth_bits);
+    o.triangles.draw(o.colour_pass, o.owners, o.depth_bits, o.colour, constants_, materials_,
+                     geometry_.normals());
+}
+
+void FragmentSource::finish() {
+    if (average_)
+        average_->run(cellist::Range::padded(image_.size(), 64), *sample_image_, image_,
+                      static_cast<cl_uint>(image_.size()));
+}
+
+cellist::Shape FragmentSource::shape() const {
+    return {static_cast<std::uint64_t>(frame_.width()), static_cast<std::uint64_t>(frame_.height()),
+            frame_.views.size()};
+}
+
+raster::Sampling FragmentSource::sampling() const { return sampling_of(frame_.quality); }
+
+std::string FragmentSource::pass_text(std::string_view source) const {
+    return joined({defines_, "#define OIT_PASS", kernels::shading_clh, kernels::normal_clh,
+                   kernels::fragment_clh, kernels::node_clh, source, kernels::surface_clh});
+}
+
+cellist::Source FragmentSource::screen_source(std::string_view source,
+                                              const std::string& file_name) const {
+    return {.text = joined({"#include <cellist/lists.clh>\n#pragma OPENCL FP_CONTRACT OFF",
+                            defines_, kernels::shading_clh, kernels::fragment_clh,
+                            kernels::node_clh, blend_function_text(frame_.blend_function),
+                            kernels::blend_clh, kernels::screen_clh, source}),
+            .file_name = file_name,
+            .options = raster::build_options(device_)};
+}
+
+std::uint64_t FragmentSource::device_bytes() const {
+    std::uint64_t bytes = geometry_.device_bytes() + projection_.device_bytes() +
+                          transparent_.device_bytes() + materials_.size() * sizeof(Material) +
+                          image_.size() * sizeof(cl_float4);
+    if (opacities_) bytes += opacities_->size() * sizeof(cl_float);
+    if (sample_image_) bytes += sample_image_->size() * sizeof(cl_float4);
+    if (opaque_)
+        bytes += opaque_->triangles.device_bytes() + opaque_->depth_bits.size() * sizeof(cl_uint) +
+                 opaque_->owners.size() * sizeof(cl_uint) +
+                 opaque_->colour.size() * sizeof(cl_float4);
+    return bytes;
+}
+
+}  // namespace oit

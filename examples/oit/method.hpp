@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fragment_source.hpp"
+
+namespace oit {
+
+/// The depths of all fragments that a method stores, by pixel.
+struct StoredDepths {
+    std::vector<std::uint64_t> offsets;  ///< pixels + 1
+    std::vector<double> depths;          ///< in no order within a pixel
+};
+
+/// A way from fragments to an image. Each has a file in methods/, which puts it into the table.
+class Method {
+public:
+    Method() = default;
+    Method(const Method&) = delete;
+    Method& operator=(const Method&) = delete;
+    virtual ~Method() = default;
+
+    /// Stores what the image needs of the fragments: enqueues passes of the source. May block.
+    virtual void store() = 0;
+
+    /// Makes the image, with kernels of the source over the pixels. Does not block.
+    virtual void resolve() = 0;
+
+    /// What the method keeps on the device, beside what the source has.
+    [[nodiscard]] virtual std::uint64_t device_bytes() const = 0;
+
+    /// Fragments in each pixel, where the method has all of them. Blocks.
+    [[nodiscard]] virtual std::optional<cellist::Lengths> lengths() const { return {}; }
+    /// Their depths, for comparisons. Blocks.
+    [[nodiscard]] virtual std::optional<StoredDepths> depths() const { return {}; }
+};
+
+/// A line of the table of methods.
+struct MethodInfo {
+    std::string_view name;
+    std::string_view summary;  ///< what it does and where it comes from, in one line
+    int position;              ///< in the table
+    bool exact;                ///< the image of all fragments, up to rounding
+    /// Why it cannot draw a frame, or nothing.
+    std::string (*refusal)(const Frame& frame, const Needs& needs);
+    /// Refers to the source, which must outlive the method.
+    std::unique_ptr<Method> (*make)(FragmentSource& source);
+};
+
+/// Puts a method into the table: a constant in the method's file.
+class MethodRegistration {
+public:
+    explicit MethodRegistration(const MethodInfo& info);
+};
+
+/// All methods, by position.
+[[nodiscard]] std::span<const MethodInfo> methods();
+
+/// Throws InputError, with the names there are, where there is none of this name.
+[[nodiscard]] const MethodInfo& method_named(std::string_view name);
+
+/// For methods that draw every frame.
+[[nodiscard]] std::string refuses_nothing(const Frame& frame, const Needs& needs);
+
+}  // namespace oit

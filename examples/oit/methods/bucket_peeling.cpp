@@ -1,0 +1,98 @@
+// Each pass takes a layer of each of several ranges of depth.
+#include <bit>
+#include <limits>
+
+#include "oit_kernels.hpp"
+#include "peeling.hpp"
+
+namespace oit {
+namespace {
+
+constexpr std::size_t buckets = 8;
+
+// Least and greatest depth, as bits.
+struct Range {
+    cl_uint least, greatest;
+};
+
+std::string refusal(const Frame& frame, const Needs& needs) {
+    if (frame.quality.layers) return "it takes layers out of turn and cannot count them";
+    return peeling_refusal(frame, needs);
+}
+
+std::string text(const std::string& define) {
+    return "#define OIT_BUCKETS " + std::to_string(buckets) + "\n#define " + define + "\n" +
+           peeling_text(kernels::bucket_peeling_cl);
+}
+
+class BucketPeeling : public Method {
+public:
+    explicit BucketPeeling(FragmentSource& source)
+        : source_(source),
+          find_range_(source.pass(text("OIT_FIND_RANGE"), "bucket_peeling.cl")),
+          find_keys_(source.pass(text("OIT_FIND_KEYS"), "bucket_peeling.cl")),
+          take_(source.pass(text("OIT_TAKE"), "bucket_peeling.cl")),
+          peel_(source.screen_kernel(text("OIT_PEEL"), "bucket_peeling.cl", "oit_peel_buckets")),
+          finish_(
+              source.screen_kernel(text("OIT_PEEL"), "bucket_peeling.cl", "oit_finish_peeling")),
+          begin_(source.device(), source.frame().pixels()),
+          range_(source.device(), source.frame().pixels()),
+          keys_(source.device(), buckets * source.frame().pixels()),
+          counts_(source.device(), keys_.size()),
+          nodes_(source.device(), source.layout().words * keys_.size()),
+          state_(source.device(), source.state_floats() * source.frame().pixels()),
+          left_(source.device(), 1) {}
+
+    void store() override {
+        const auto draw = [&](raster::Pass& pass) {
+            source_.draw(pass, begin_, range_.cl(), keys_, counts_, nodes_);
+        };
+        begin_.fill(first_key);
+        range_.fill({std::bit_cast<cl_uint>(std::numeric_limits<float>::max()), 0});
+        keys_.fill(last_key);
+        counts_.fill(0);
+        draw(find_range_);
+        for (cl_uint first = 1;; first = 0) {
+            left_.fill(0);
+            draw(find_keys_);
+            draw(take_);
+            source_.run_on_screen(peel_, begin_, range_.cl(), keys_, counts_, nodes_, state_, left_,
+                                  first);
+            if (left_.download().front() == 0) break;
+        }
+    }
+
+    void resolve() override { source_.run_on_screen(finish_, state_); }
+
+    [[nodiscard]] std::uint64_t device_bytes() const override {
+        return begin_.size() * sizeof(cl_ulong) + range_.size() * sizeof(Range) +
+               keys_.size() * sizeof(cl_ulong) + counts_.size() * sizeof(cl_uint) +
+               nodes_.size() * sizeof(cl_uint) + state_.size() * sizeof(cl_float);
+    }
+
+private:
+    FragmentSource& source_;
+    raster::Pass find_range_;
+    raster::Pass find_keys_;
+    raster::Pass take_;
+    cellist::Kernel peel_;
+    cellist::Kernel finish_;
+    cellist::Buffer<cl_ulong> begin_;
+    cellist::Buffer<Range> range_;
+    cellist::Buffer<cl_ulong> keys_;
+    cellist::Buffer<cl_uint> counts_;
+    cellist::Buffer<cl_uint> nodes_;
+    cellist::Buffer<cl_float> state_;
+    cellist::Buffer<cl_uint> left_;
+};
+
+const MethodRegistration bucket_peeling(
+    {.name = "bucket_peeling",
+     .summary = "a layer of each of 8 ranges of depth a pass (Liu et al. 2009)",
+     .position = 6,
+     .exact = true,
+     .refusal = refusal,
+     .make = make_peeling<BucketPeeling>});
+
+}  // namespace
+}  // namespace oit

@@ -1,0 +1,20 @@
+// Contiguous lists: the passes run twice, to count and to fill.
+#include "list_method.hpp"
+
+namespace oit {
+namespace {
+
+std::unique_ptr<Method> make(FragmentSource& source) {
+    return make_list_method(source, {.storage = cellist::Storage::counted});
+}
+
+const MethodRegistration counted(
+    {.name = "counted",
+     .summary = "lists behind one another, in two passes (prefix sums)",
+     .position = 2,
+     .exact = true,
+     .refusal = refuses_nothing,
+     .make = make});
+
+}  // namespace
+}  // namespace oit

@@ -1,0 +1,19 @@
+// A linked list for each pixel, in one pass.
+#include "list_method.hpp"
+
+namespace oit {
+namespace {
+
+std::unique_ptr<Method> make(FragmentSource& source) {
+    return make_list_method(source, {.storage = cellist::Storage::linked});
+}
+
+const MethodRegistration linked({.name = "linked",
+                                 .summary = "a linked list for each pixel (Yang et al. 2010)",
+                                 .position = 1,
+                                 .exact = true,
+                                 .refusal = refuses_nothing,
+                                 .make = make});
+
+}  // namespace
+}  // namespace oit
