@@ -266,7 +266,7 @@ template <std::size_t count>
 std::array<BuildReport, count> reports(Build& build) {
     std::array<BuildReport, count> result;
     const std::vector<BuildReport>& all = ListsCore::finish(build);
-    std::copy(all.begin(), all.end(), result.begin());
+    for (std::size_t i = 0; i < count; ++i) result[i] = all[i];
     return result;
 }
 
