@@ -142,8 +142,10 @@ void run(const oit::Options& options) {
     report.device = device.info().name;
     report.driver = device.info().driver;
     report.triangles = triangles;
-    report.drops = scene.models.front().mesh.drops;
-    report.mesh_ends_within_line = scene.models.front().mesh.ends_within_line;
+    if (!scene.models.empty()) {
+        report.drops = scene.models.front().mesh.drops;
+        report.mesh_ends_within_line = scene.models.front().mesh.ends_within_line;
+    }
     report.node_bytes = 4 * renderer.layout().words;
     report.colour_max = renderer.needs().colour_max;
     report.times = draw_frames(renderer, options.frames);

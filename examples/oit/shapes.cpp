@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -29,6 +31,14 @@ std::uint32_t add_vertex(Mesh& mesh, const dvec3& position, const dvec3& normal)
 void add_quad(Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
     mesh.triangles.push_back({a, b, c});
     mesh.triangles.push_back({a, c, d});
+}
+
+void append(Mesh& mesh, const Mesh& other) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
+    mesh.normals.insert(mesh.normals.end(), other.normals.begin(), other.normals.end());
+    for (const auto& t : other.triangles)
+        mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
 }
 
 // The right side of a direction in the plane of radius and z.
@@ -92,6 +102,18 @@ std::vector<dvec2> arc(const dvec2& centre, double radius, double begin, double 
     return points;
 }
 
+std::vector<dvec2> divided(std::span<const dvec2> profile, double longest) {
+    std::vector<dvec2> points{profile.front()};
+    for (std::size_t i = 0; i + 1 < profile.size(); ++i) {
+        const dvec2 way = profile[i + 1] - profile[i];
+        const int parts = std::max(1, static_cast<int>(std::ceil(glm::length(way) / longest)));
+        for (int k = 1; k < parts; ++k)
+            points.push_back(profile[i] + static_cast<double>(k) / parts * way);
+        points.push_back(profile[i + 1]);
+    }
+    return points;
+}
+
 Mesh lathe(std::span<const dvec2> profile, int segments, Corners corners) {
     Mesh mesh;
     const auto add_circle = [&](const dvec2& point, const dvec2& normal) {
@@ -129,10 +151,10 @@ Mesh ring(double radius, double wire_radius, int segments, int wire_segments) {
     return lathe(profile, segments, Corners::round);
 }
 
-Mesh sleeve(double inner, double outer, double low, double high, int segments) {
+Mesh sleeve(double inner, double outer, double low, double high, int segments, double longest) {
     const dvec2 profile[] = {
         {outer, low}, {outer, high}, {inner, high}, {inner, low}, {outer, low}};
-    return lathe(profile, segments, Corners::sharp);
+    return lathe(divided(profile, longest), segments, Corners::sharp);
 }
 
 Mesh gear(const Gear& shape) {
@@ -143,8 +165,7 @@ Mesh gear(const Gear& shape) {
         const double part = static_cast<double>(i % shape.tooth_points) / shape.tooth_points;
         const double radius = shape.pitch_radius + (tooth_profile(part) - 0.5) * shape.tooth_height;
         outer.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
-        inner.emplace_back(shape.bore_radius * std::cos(angle),
-                           shape.bore_radius * std::sin(angle));
+        inner.emplace_back(shape.rim_radius * std::cos(angle), shape.rim_radius * std::sin(angle));
     }
     Mesh mesh;
     add_cap(mesh, outer, inner, shape.thickness / 2);
@@ -152,10 +173,19 @@ Mesh gear(const Gear& shape) {
     add_wall(mesh, outer, shape.thickness / 2);
     std::reverse(inner.begin(), inner.end());
     add_wall(mesh, inner, shape.thickness / 2);
+
+    // The web ends inside of the rim.
+    const double outside = shape.rim_radius + 0.25 * shape.tooth_height;
+    const double top = shape.thickness / 6;
+    const dvec2 web[] = {
+        {outside, top}, {shape.bore_radius, top}, {shape.bore_radius, -top}, {outside, -top}};
+    append(mesh, lathe(divided(web, 0.07), shape.web_segments, Corners::sharp));
     return mesh;
 }
 
 Mesh spring(const Spring& shape, std::size_t triangles) {
+    if (triangles < 60 || triangles > 10'000'000)
+        throw std::invalid_argument("a spring of " + std::to_string(triangles) + " triangles");
     constexpr std::size_t wire = 12;
     // What whole rings of the wire leave over goes to the ends.
     const std::size_t rings = (triangles - 6) / (2 * wire);

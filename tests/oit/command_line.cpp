@@ -77,6 +77,21 @@ TEST_CASE("bad arguments are refused") {
              {"--out missing/folder/a.png", "missing/folder"},
              {"--out .", "folder"},
              {"--json missing/folder/a.json", "missing/folder"},
+             {"--samples 3", "2, 4 or 8"},
+             {"--samples 0", "0"},
+             {"--resolve both", "both"},
+             {"--depth-range", "--samples"},
+             {"--format rgba9", "rgb565_d16"},
+             {"--depth-scale odd", "odd"},
+             {"--epsilon 1.5", "1.5"},
+             {"--epsilon nan", "nan"},
+             {"--stereo -1", "-1"},
+             {"--time inf", "inf"},
+             {"--blend nosuch.cl", "nosuch.cl"},
+             {"--blend .", "function"},
+             {"--method nosuch", "weighted"},
+             {"--method dual_peeling --layers 3", "dual_peeling"},
+             {"--method weighted --blend additive", "weighted"},
              {"--bogus", "--bogus"},
              {"another.obj", "another.obj"},
          }) {
@@ -111,6 +126,38 @@ TEST_CASE("arguments that start with a minus and extreme ones are accepted") {
     }
 }
 
+TEST_CASE("scenes with nothing to blend, or with nothing at all, are drawn") {
+    const Program program;
+    for (const std::string scene : {"extreme-nothing", "extreme-opaque", "extreme-nan"}) {
+        INFO(scene);
+        const Outcome outcome =
+            program.run(scene + " --size 40x30 --frames 1 --reference --samples 2 --stereo 0.2");
+        INFO(outcome.error);
+        CHECK(outcome.exit_code == 0);
+        CHECK(contains(outcome.out, "0 of 2,400 pixels"));
+    }
+}
+
+TEST_CASE("the user's function is read from a file, and its failures are told") {
+    const Program program;
+    const std::string head =
+        "static void blend(const OitFragment* fragment, float distance, float3* colour,\n"
+        "                  float3* transmittance) {\n";
+    (void)program.folder().write("fine.cl", head + "*transmittance *= 0.5f; }");
+    (void)program.folder().write("nan.cl", head + "*colour = NAN; }");
+    (void)program.folder().write("bad.cl", head + "*colour = nothing; }");
+    const std::string run = "knot.obj --size 64x48 --frames 1 --blend ";
+    const Outcome fine = program.run(run + "fine.cl");
+    INFO(fine.error);
+    CHECK(fine.exit_code == 0);
+    CHECK_FALSE(contains(fine.out, "NaN"));
+    CHECK(contains(program.run(run + "nan.cl").out, "NaN"));
+    const Outcome bad = program.run(run + "bad.cl");
+    CHECK(bad.exit_code == 1);
+    CHECK(contains(bad.error, "bad.cl"));
+    CHECK(contains(bad.error, "nothing"));
+}
+
 TEST_CASE("the picture, the screen and the JSON agree, and pictures are equal in every run") {
     const Program program;
     const std::string arguments =
@@ -121,9 +168,9 @@ TEST_CASE("the picture, the screen and the JSON agree, and pictures are equal in
     CHECK(outcome.error.empty());
     const std::string json = read_file(program.folder() / "a.json");
     for (const std::string key :
-         {"device", "driver", "width", "height", "triangles", "fragments", "cells_nonempty",
-          "longest_list", "pool_bytes", "time_ms", "transform", "raster_insert", "sort_blend",
-          "frame", "psnr_db", "max_abs_error"}) {
+         {"scene", "method", "device", "driver", "width", "height", "triangles", "fragments",
+          "cells_nonempty", "longest_list", "pool_bytes", "time_ms", "transform", "raster_insert",
+          "sort_blend", "frame", "psnr_db", "max_abs_error"}) {
         INFO(key);
         CHECK(contains(json, "\"" + key + "\""));
     }

@@ -108,11 +108,14 @@ private:
             const Gear driving{.teeth = teeth,
                                .pitch_radius = module * teeth,
                                .tooth_height = 4 * module,
+                               .rim_radius = module * (teeth - 7),
                                .bore_radius = 0.045,
                                .thickness = 0.045};
             Gear driven = driving;
             driven.teeth = teeth_of_pair - teeth;
             driven.pitch_radius = module * driven.teeth;
+            driven.rim_radius = module * (driven.teeth - 7);
+            driven.web_segments = 24;
             driven.thickness = 0.05;
             driven.tooth_points = 8;
             const std::size_t driving_model = add_model(gear(driving));
@@ -141,13 +144,13 @@ private:
                                           {0.7 * radius, end - 0.04},
                                           {0.7 * radius, end},
                                           {0, end}};
-            return lathe(profile, 96, Corners::sharp);
+            return lathe(divided(profile, 0.1), 40, Corners::sharp);
         };
         add(add_model(stepped(0.042)), steel_, moved(0, 0, 0), speed);
         const std::size_t thin = add_model(stepped(0.03));
-        const std::size_t inner = add_model(sleeve(0.036, 0.043, -0.44, 0.44, 160));
-        const std::size_t drum = add_model(sleeve(0.115, 0.123, -0.39, 0.39, 360));
-        const std::size_t outer_drum = add_model(sleeve(0.132, 0.140, -0.39, 0.39, 360));
+        const std::size_t inner = add_model(sleeve(0.036, 0.043, -0.44, 0.44, 40, 0.11));
+        const std::size_t drum = add_model(sleeve(0.115, 0.123, -0.39, 0.39, 72, 0.13));
+        const std::size_t outer_drum = add_model(sleeve(0.132, 0.140, -0.39, 0.39, 72, 0.13));
         for (int planet = 0; planet < planets; ++planet) {
             add(thin, steel_, at_planet(planet, 0));
             add(inner, clear_, at_planet(planet, 0));
@@ -192,13 +195,13 @@ private:
         quarters(-0.48, 0.01, 1, 3);
         profile.erase(std::unique(profile.begin(), profile.end(), is_near), profile.end());
         profile.back() = profile.front();
-        add(add_model(lathe(profile, 360, Corners::round)), clear_, moved(0, 0, 0));
+        add(add_model(lathe(divided(profile, 0.06), 240, Corners::round)), clear_, moved(0, 0, 0));
 
         for (const double radius : {0.78, 0.80, 0.82})
-            add(add_model(sleeve(radius, radius + 0.004, -0.38, 0.38, 240)), clear_,
+            add(add_model(sleeve(radius, radius + 0.004, -0.38, 0.38, 120, 0.095)), clear_,
                 moved(0, 0, 0));
 
-        const std::size_t plate = add_model(sleeve(0.10, 0.76, -0.006, 0.006, 960));
+        const std::size_t plate = add_model(sleeve(0.10, 0.76, -0.006, 0.006, 144, 0.095));
         for (const double z : {-0.40, 0.40}) add(plate, clear_, moved(0, 0, z));
 
         constexpr int bolts = 24;
