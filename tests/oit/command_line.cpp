@@ -151,6 +151,7 @@ TEST_CASE("the user's function is read from a file, and its failures are told") 
     INFO(fine.error);
     CHECK(fine.exit_code == 0);
     CHECK_FALSE(contains(fine.out, "NaN"));
+    CHECK(program.run(run + "'" CELLIST_FOG_PATH "'").exit_code == 0);
     CHECK(contains(program.run(run + "nan.cl").out, "NaN"));
     const Outcome bad = program.run(run + "bad.cl");
     CHECK(bad.exit_code == 1);
