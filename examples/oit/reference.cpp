@@ -86,7 +86,7 @@ private:
     [[nodiscard]] bool too_close(double a, double b) const {
         // Infinity is the depth of no surface, which is close to nothing.
         return std::isfinite(a) && std::isfinite(b) &&
-               std::abs(a - b) <= layout_.depth_resolution(std::max(a, b), needs_);
+               std::abs(a - b) <= layout_.depth_resolution(needs_).at(std::max(a, b));
     }
     // The same for depths that are compared before they are stored.
     [[nodiscard]] static bool float_too_close(double a, double b) {

@@ -41,4 +41,9 @@ PassTimes Renderer::draw_at(double time) {
     return draw();
 }
 
+PassTimes Renderer::draw_changed() {
+    source_.follow();
+    return draw();
+}
+
 }  // namespace oit

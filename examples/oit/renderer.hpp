@@ -33,8 +33,13 @@ public:
     /// The same at another time of the scene, in seconds.
     PassTimes draw_at(double time);
 
+    /// The same where the frame has another time, or other views of the same size.
+    PassTimes draw_changed();
+
     /// The linear image, eye by eye, row by row from the top.
     [[nodiscard]] std::vector<cl_float4> image() const { return source_.image().download(); }
+    /// The same on the device.
+    [[nodiscard]] const cellist::Buffer<cl_float4>& picture() const { return source_.image(); }
     [[nodiscard]] const Method& method() const { return *method_; }
     [[nodiscard]] const Needs& needs() const { return source_.needs(); }
     [[nodiscard]] const NodeLayout& layout() const { return source_.layout(); }
