@@ -35,6 +35,8 @@ struct Quality {
     std::optional<std::uint32_t> layers = {};
     /// Blending ends where no more than this part of the light passes.
     float epsilon = 0;
+    /// What the method is compiled for, of MethodInfo::sizes; none means its default.
+    std::optional<std::uint32_t> size = {};
 };
 
 /// Everything that determines a picture; the device and the reference draw the same.

@@ -1,6 +1,5 @@
-#include <algorithm>
 #include <iostream>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include <cellist/cellist.hpp>
@@ -9,66 +8,18 @@
 #include "comparison.hpp"
 #include "frame.hpp"
 #include "image.hpp"
-#include "input_error.hpp"
-#include "mesh.hpp"
 #include "options.hpp"
 #include "progress.hpp"
 #include "reference.hpp"
 #include "renderer.hpp"
 #include "report.hpp"
-#include "scenes.hpp"
+#include "stopwatch.hpp"
 
 namespace {
-
-using support::InputError;
 
 void check_output_paths(const oit::Options& options) {
     support::check_image_path(options.out);
     if (!options.json.empty()) support::check_image_path(options.json);
-}
-
-// The largest buffers of a frame: image and opaque colour with 16 bytes a sample.
-void check_size(const oit::Options& options, const cellist::Device& device) {
-    const std::string size =
-        "--size " + std::to_string(options.width) + "x" + std::to_string(options.height);
-    const std::uint64_t bytes = 16 * static_cast<std::uint64_t>(options.width) *
-                                static_cast<std::uint64_t>(options.height) *
-                                static_cast<std::uint64_t>(options.quality.samples) *
-                                (options.eye_separation ? 2 : 1);
-    const std::uint64_t limit = device.info().max_allocation_bytes;
-    if (bytes > limit)
-        throw InputError(size + " needs an image of " + std::to_string(bytes) +
-                         " bytes, this device allocates at most " + std::to_string(limit) +
-                         " at once");
-    if (options.width > RASTER_SIDE_MAX || options.height > RASTER_SIDE_MAX)
-        throw InputError(size + ": each side has at most " + std::to_string(RASTER_SIDE_MAX) +
-                         " pixels");
-}
-
-void set_blend(oit::Scene& scene, oit::Blend blend) {
-    for (oit::Material& material : scene.materials)
-        if (material.blend != static_cast<cl_uint>(oit::Blend::opaque))
-            material.blend = static_cast<cl_uint>(blend);
-}
-
-oit::Scene make_scene(const oit::Options& options) {
-    oit::Scene scene;
-    if (const oit::SceneInfo* info = oit::find_scene(options.scene)) {
-        scene = info->make(options.alpha);
-    } else {
-        support::Mesh mesh = support::load_mesh(options.scene);
-        support::fit_to_unit_sphere(mesh);
-        scene = oit::scene_of(std::move(mesh), options.alpha);
-    }
-    if (options.blend) set_blend(scene, *options.blend);
-    return scene;
-}
-
-std::vector<raster::View> make_views(const oit::Options& options) {
-    if (options.eye_separation)
-        return support::frame_unit_sphere(options.orbit, options.width, options.height,
-                                          *options.eye_separation);
-    return {support::frame_unit_sphere(options.orbit, options.width, options.height)};
 }
 
 // Rows of all eyes side by side.
@@ -85,17 +36,11 @@ std::vector<cl_float4> side_by_side(const std::vector<cl_float4>& image, const o
     return rows;
 }
 
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    const std::size_t half = values.size() / 2;
-    return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
-
 oit::PassTimes median_times(const std::vector<oit::PassTimes>& frames) {
     const auto of = [&](double oit::PassTimes::*pass) {
         std::vector<double> values;
         for (const oit::PassTimes& frame : frames) values.push_back(frame.*pass);
-        return median(values);
+        return support::median(std::move(values));
     };
     return {of(&oit::PassTimes::transform_ms), of(&oit::PassTimes::raster_insert_ms),
             of(&oit::PassTimes::sort_blend_ms), of(&oit::PassTimes::frame_ms)};
@@ -123,18 +68,11 @@ oit::Comparison compare_with_reference(const oit::Frame& frame, const oit::Rende
 
 void run(const oit::Options& options) {
     check_output_paths(options);
-    const cellist::Device device = options.device.empty() ? cellist::Device::choose()
-                                                          : cellist::Device::choose(options.device);
-    check_size(options, device);
-
-    oit::Scene scene = make_scene(options);
+    const cellist::Device device = oit::choose_device(options);
+    oit::Scene scene = oit::make_scene(options);
     const std::uint64_t triangles = scene.triangles();
     if (options.opaque_floor) oit::add_floor(scene);
-    const oit::Frame frame{.scene = scene,
-                           .views = make_views(options),
-                           .time = options.time,
-                           .quality = options.quality,
-                           .blend_function = options.blend_function};
+    const oit::Frame frame = oit::make_frame(scene, options);
     oit::Renderer renderer(device, frame, oit::method_named(options.method));
 
     oit::Report report;

@@ -34,6 +34,17 @@ const MethodInfo& method_named(std::string_view name) {
                               names);
 }
 
+std::uint32_t read_size_of(const MethodInfo& method, const std::string& text) {
+    std::string known;
+    for (const std::uint32_t size : method.sizes) {
+        if (std::to_string(size) == text) return size;
+        known += (known.empty() ? "" : ", ") + std::to_string(size);
+    }
+    const std::string name(method.name);
+    throw support::InputError("no size of the method " + name + " is '" + text +
+                              "': " + (known.empty() ? "it has none" : "there are " + known));
+}
+
 std::string refuses_nothing(const Frame&, const Needs&) { return {}; }
 
 }  // namespace oit

@@ -47,6 +47,9 @@ struct MethodInfo {
     std::string_view summary;  ///< what it does and where it comes from, in one line
     int position;              ///< in the table
     bool exact;                ///< the image of all fragments, up to rounding
+    /// What it can be compiled for (layers, trials, steps ...), smallest first: Quality::size. Nothing
+    /// where there is no such choice.
+    std::span<const std::uint32_t> sizes = {};
     /// Why it cannot draw a frame, or nothing.
     std::string (*refusal)(const Frame& frame, const Needs& needs);
     /// Refers to the source, which must outlive the method.
@@ -64,6 +67,9 @@ public:
 
 /// Throws InputError, with the names there are, where there is none of this name.
 [[nodiscard]] const MethodInfo& method_named(std::string_view name);
+
+/// The text of a size. Throws InputError, with the sizes there are, where the method has no such size.
+[[nodiscard]] std::uint32_t read_size_of(const MethodInfo& method, const std::string& text);
 
 /// For methods that draw every frame.
 [[nodiscard]] std::string refuses_nothing(const Frame& frame, const Needs& needs);

@@ -41,6 +41,8 @@ public:
           layout_(node_layout(frame.quality, needs_)),
           samples_(static_cast<std::size_t>(frame.quality.samples)),
           opaque_(frame.pixels() * samples_) {
+        reference_.width = static_cast<std::size_t>(frame.width());
+        reference_.height = static_cast<std::size_t>(frame.height());
         reference_.ambiguous.assign(frame.pixels(), false);
         reference_.image.resize(frame.pixels());
         for (const Instance& instance : frame.scene.instances)
@@ -264,6 +266,13 @@ private:
 };
 
 }  // namespace
+
+std::uint64_t Reference::most_layers() const {
+    std::uint64_t most = 0;
+    for (std::size_t p = 0; p + 1 < offsets.size(); ++p)
+        most = std::max(most, offsets[p + 1] - offsets[p]);
+    return most;
+}
 
 Reference draw_reference(const Frame& frame, const ReferenceOptions& options) {
     return Painter(frame, options).draw();

@@ -22,12 +22,16 @@ struct ReferenceFragment {
 
 /// A frame in double precision.
 struct Reference {
+    std::size_t width = 0, height = 0;         ///< of an eye's image
     std::vector<glm::dvec3> image;             ///< linear, eye by eye
     std::vector<std::uint64_t> offsets;        ///< pixels + 1 offsets into `fragments`
     std::vector<ReferenceFragment> fragments;  ///< by pixel, nearest first
     /// Pixels where the nodes' format cannot tell the order of two fragments that count, or float
     /// whether a fragment is behind the opaque surface.
     std::vector<bool> ambiguous;
+
+    /// Fragments of the pixel that has the most.
+    [[nodiscard]] std::uint64_t most_layers() const;
 };
 
 struct ReferenceOptions {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "input_error.hpp"
+#include "setting.hpp"
 
 namespace oit {
 namespace {
@@ -52,6 +53,7 @@ void print_comparison(const Comparison& c, std::ostream& out) {
         return out << "  " << std::left << std::setw(18) << name << std::right;
     };
     line("PSNR") << fixed(c.psnr_db, 1) << " dB against double precision\n";
+    line("SSIM") << fixed(c.ssim, 6) << '\n';
     line("largest error") << fixed(255 * c.max_abs_error, 4) << " / 255\n";
     line("over 1/255") << grouped(c.pixels_over) << " of " << grouped(c.pixels) << " pixels, "
                        << grouped(c.pixels_explained)
@@ -80,8 +82,8 @@ void print(const Report& report, std::ostream& out) {
                                    : "all layers")
         << (options.opaque_floor ? ", opaque floor" : "") << '\n';
     line("device") << report.device << " (driver " << report.driver << ")\n";
-    line("method") << options.method << ", nodes of " << report.node_bytes << " bytes, "
-                   << options.quality.samples
+    line("method") << method_text({&method_named(options.method), options.quality}) << ", nodes of "
+                   << report.node_bytes << " bytes, " << options.quality.samples
                    << (options.quality.samples == 1 ? " sample" : " samples") << " a pixel\n";
     line("triangles") << grouped(report.triangles) << dropped_text(report.drops) << '\n';
     if (report.lengths) {
@@ -111,7 +113,7 @@ void write_json(const Report& report, const std::filesystem::path& path) {
     json["device"] = report.device;
     json["driver"] = report.driver;
     json["scene"] = std::filesystem::path(options.scene).filename().string();
-    json["method"] = options.method;
+    json["method"] = method_text({&method_named(options.method), options.quality});
     json["width"] = options.width;
     json["height"] = options.height;
     json["alpha"] = options.alpha;
@@ -144,10 +146,12 @@ void write_json(const Report& report, const std::filesystem::path& path) {
                        {"sort_blend", report.times.sort_blend_ms},
                        {"frame", report.times.frame_ms}};
     json["psnr_db"] = nullptr;
+    json["ssim"] = nullptr;
     json["max_abs_error"] = nullptr;
     if (report.comparison) {
         const Comparison& c = *report.comparison;
         if (std::isfinite(c.psnr_db)) json["psnr_db"] = c.psnr_db;
+        json["ssim"] = c.ssim;
         json["max_abs_error"] = c.max_abs_error;
         json["reference"] = {{"pixels_over_1_255", c.pixels_over},
                              {"pixels_explained", c.pixels_explained},

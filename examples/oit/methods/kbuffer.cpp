@@ -1,15 +1,21 @@
-// The nearest layers of each pixel in slots, and nothing of the others: Quality::layers of them, or 8.
+// The nearest layers of each pixel in slots, and nothing of the others: as many as the size
+// says, Quality::layers, or 8.
+#include <array>
+
 #include "list_method.hpp"
 
 namespace oit {
 namespace {
 
+constexpr std::array sizes{1U, 2U, 4U, 8U, 16U, 32U, 64U};
 constexpr std::uint32_t default_slots = 8;
 
 std::unique_ptr<Method> make(FragmentSource& source) {
+    const Quality& quality = source.frame().quality;
+    const std::uint32_t slots = quality.size.value_or(quality.layers.value_or(default_slots));
     return make_list_method(source, {.storage = cellist::Storage::fixed,
                                      .overflow = cellist::Overflow::keep_nearest,
-                                     .slots = source.frame().quality.layers.value_or(default_slots),
+                                     .slots = slots,
                                      .nearest_by = "key"});
 }
 
@@ -18,6 +24,7 @@ const MethodRegistration kbuffer(
      .summary = "the 8 nearest layers, or as many as asked for (Bavoil et al. 2007)",
      .position = 7,
      .exact = false,
+     .sizes = sizes,
      .refusal = refuses_nothing,
      .make = make});
 
