@@ -228,15 +228,16 @@ Scene make_scene(const FrameOptions& options) {
     return scene;
 }
 
-Frame make_frame(const Scene& scene, const FrameOptions& options) {
-    std::vector<raster::View> views;
+std::vector<raster::View> make_views(const FrameOptions& options) {
     if (options.eye_separation)
-        views = support::frame_unit_sphere(options.orbit, options.width, options.height,
-                                           *options.eye_separation);
-    else
-        views = {support::frame_unit_sphere(options.orbit, options.width, options.height)};
+        return support::frame_unit_sphere(options.orbit, options.width, options.height,
+                                          *options.eye_separation);
+    return {support::frame_unit_sphere(options.orbit, options.width, options.height)};
+}
+
+Frame make_frame(const Scene& scene, const FrameOptions& options) {
     return {.scene = scene,
-            .views = std::move(views),
+            .views = make_views(options),
             .time = options.time,
             .quality = options.quality,
             .blend_function = options.blend_function};

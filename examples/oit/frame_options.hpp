@@ -68,6 +68,9 @@ void add_option(CLI::App& app, const char* name, std::string& value, const char*
 /// The scene without a floor, from a file or computed. Throws InputError where a file holds none.
 [[nodiscard]] Scene make_scene(const FrameOptions& options);
 
+/// What the eyes see.
+[[nodiscard]] std::vector<raster::View> make_views(const FrameOptions& options);
+
 /// The frame of a scene, which must outlive it.
 [[nodiscard]] Frame make_frame(const Scene& scene, const FrameOptions& options);
 

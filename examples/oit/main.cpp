@@ -1,3 +1,4 @@
+#include <functional>
 #include <iostream>
 #include <utility>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "comparison.hpp"
 #include "frame.hpp"
 #include "image.hpp"
+#include "keeper.hpp"
 #include "options.hpp"
 #include "progress.hpp"
 #include "reference.hpp"
@@ -46,14 +48,28 @@ oit::PassTimes median_times(const std::vector<oit::PassTimes>& frames) {
             of(&oit::PassTimes::sort_blend_ms), of(&oit::PassTimes::frame_ms)};
 }
 
-oit::PassTimes draw_frames(oit::Renderer& renderer, std::uint32_t count) {
+// Puts the frame at its moment: the i-th of `count`.
+void set_moment(oit::Frame& frame, const oit::Options& options, std::uint32_t i,
+                std::uint32_t count) {
+    if (!options.until && options.turn_degrees == 0) return;
+    const double part = count > 1 ? static_cast<double>(i) / (count - 1) : 0;
+    oit::FrameOptions moment = options;
+    moment.time += part * (options.until.value_or(options.time) - options.time);
+    moment.orbit.azimuth_degrees += part * options.turn_degrees;
+    frame.time = moment.time;
+    frame.views = oit::make_views(moment);
+}
+
+// Calls draw() for each moment.
+oit::PassTimes draw_frames(oit::Frame& frame, const oit::Options& options,
+                           const std::function<oit::PassTimes()>& draw) {
     support::Progress progress("drawing");
     progress.update(0);
-    renderer.draw();  // builds the kernels' last variants and grows the pool
     std::vector<oit::PassTimes> frames;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        progress.update(static_cast<double>(i) / count);
-        frames.push_back(renderer.draw());
+    for (std::uint32_t i = 0; i < options.frames; ++i) {
+        progress.update(static_cast<double>(i) / options.frames);
+        set_moment(frame, options, i, options.frames);
+        frames.push_back(draw());
     }
     return median_times(frames);
 }
@@ -66,32 +82,42 @@ oit::Comparison compare_with_reference(const oit::Frame& frame, const oit::Rende
     return oit::compare(reference, image, renderer.method().depths());
 }
 
-void run(const oit::Options& options) {
-    check_output_paths(options);
-    const cellist::Device device = oit::choose_device(options);
-    oit::Scene scene = oit::make_scene(options);
-    const std::uint64_t triangles = scene.triangles();
-    if (options.opaque_floor) oit::add_floor(scene);
-    const oit::Frame frame = oit::make_frame(scene, options);
-    oit::Renderer renderer(device, frame, oit::method_named(options.method));
+void draw_with_method(oit::Report& report, oit::Renderer& renderer, oit::Frame& frame) {
+    renderer.draw();  // builds the kernels' last variants and grows the pool
+    const bool changes = report.options.until || report.options.turn_degrees != 0;
+    report.times = draw_frames(frame, report.options, [&] {
+        return changes ? renderer.draw_changed() : renderer.draw();
+    });
+}
 
-    oit::Report report;
-    report.options = options;
+void draw_within_budget(oit::Report& report, oit::Keeper& keeper, oit::Frame& frame) {
+    oit::KeptBudget& kept = report.kept;
+    report.times = draw_frames(frame, report.options, [&] {
+        const oit::Keeper::Drawn drawn = keeper.draw();
+        kept.add(drawn, frame.time, *report.options.budget);
+        return drawn.times;
+    });
+    report.choice = keeper.choice();
+    report.options.method = oit::method_text(report.choice->setting);
+    report.options.quality = report.choice->setting.quality;
+}
+
+void describe(oit::Report& report, const oit::Scene& scene, const cellist::Device& device) {
     report.device = device.info().name;
     report.driver = device.info().driver;
-    report.triangles = triangles;
-    if (!scene.models.empty()) {
-        report.drops = scene.models.front().mesh.drops;
-        report.mesh_ends_within_line = scene.models.front().mesh.ends_within_line;
-    }
+    if (scene.models.empty()) return;
+    report.drops = scene.models.front().mesh.drops;
+    report.mesh_ends_within_line = scene.models.front().mesh.ends_within_line;
+}
+
+void write(oit::Report& report, const oit::Frame& frame, const oit::Renderer& renderer) {
+    const oit::Options& options = report.options;
     report.node_bytes = 4 * renderer.layout().words;
     report.colour_max = renderer.needs().colour_max;
-    report.times = draw_frames(renderer, options.frames);
     const std::vector<cl_float4> image = renderer.image();
     report.pixels_nan = oit::count_nan(image);
     support::write_png(options.out, side_by_side(image, frame),
                        options.width * static_cast<int>(frame.views.size()), options.height);
-
     report.lengths = renderer.method().lengths();
     report.method_bytes = renderer.method().device_bytes();
     report.device_bytes = renderer.device_bytes();
@@ -100,15 +126,42 @@ void run(const oit::Options& options) {
     oit::print(report, std::cout);
 }
 
+// The exit code: 2 where no setting meets the budget.
+int run(const oit::Options& options) {
+    check_output_paths(options);
+    const cellist::Device device = oit::choose_device(options);
+    oit::Scene scene = oit::make_scene(options);
+    oit::Report report;
+    report.options = options;
+    report.triangles = scene.triangles();
+    if (options.opaque_floor) oit::add_floor(scene);
+    describe(report, scene, device);
+    oit::Frame frame = oit::make_frame(scene, options);
+    if (!options.budget) {
+        oit::Renderer renderer(device, frame, oit::method_named(options.method));
+        draw_with_method(report, renderer, frame);
+        write(report, frame, renderer);
+        return 0;
+    }
+    set_moment(frame, options, 0, options.frames);
+    oit::Keeper keeper(device, frame, *options.budget, options.check_every);
+    draw_within_budget(report, keeper, frame);
+    // The reference is that of all layers.
+    write(report, frame, keeper.renderer());
+    return report.kept.met() ? 0 : 2;
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
-    return support::run_program("cellist-oit", [&] {
+    int exit_code = 0;
+    const int failed = support::run_program("cellist-oit", [&] {
         const oit::Options options = oit::parse_options(count, arguments);
         if (options.help)
             std::cout << options.help_text;
         else
-            run(options);
+            exit_code = run(options);
         return true;
     });
+    return failed != 0 ? failed : exit_code;
 }

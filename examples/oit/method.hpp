@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fragment_source.hpp"
+#include "scene_measure.hpp"
 
 namespace oit {
 
@@ -41,6 +42,16 @@ public:
     [[nodiscard]] virtual std::optional<StoredDepths> depths() const { return {}; }
 };
 
+/// For methods of which no bound is known.
+[[nodiscard]] std::optional<PictureError> no_bound(const SceneMeasure& scene,
+                                                   const Quality& quality);
+/// Of methods that blend all layers, packed in their order; or the nearest, or until little light
+/// passes, in float.
+[[nodiscard]] std::optional<PictureError> bound_of_layers(const SceneMeasure& scene,
+                                                          const Quality& quality);
+[[nodiscard]] std::uint64_t one_pass(const SceneMeasure& scene, const Quality& quality);
+[[nodiscard]] std::uint64_t two_passes(const SceneMeasure& scene, const Quality& quality);
+
 /// A line of the table of methods.
 struct MethodInfo {
     std::string_view name;
@@ -54,6 +65,12 @@ struct MethodInfo {
     std::string (*refusal)(const Frame& frame, const Needs& needs);
     /// Refers to the source, which must outlive the method.
     std::unique_ptr<Method> (*make)(FragmentSource& source);
+    /// The error of its picture at most, apart from what depends on an order that float depths do not
+    /// tell; nothing where theory has no bound.
+    std::optional<PictureError> (*bound)(const SceneMeasure& scene,
+                                         const Quality& quality) = no_bound;
+    /// How often it draws the transparent surfaces, at least.
+    std::uint64_t (*passes)(const SceneMeasure& scene, const Quality& quality) = one_pass;
 };
 
 /// Puts a method into the table: a constant in the method's file.

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "command_line.hpp"
+#include "input_error.hpp"
 #include "setting.hpp"
 
 namespace oit {
@@ -44,7 +45,8 @@ void read_format(const std::string& text, Options& options) {
 Options parse_options(int count, const char* const* arguments) {
     Options options;
     std::string method = options.method, layers = "all", epsilon = "0", format = "float",
-                out = options.out.string(), json, frames = "5";
+                budget, check_every = "1", until, turn = "0", out = options.out.string(), json,
+                frames = "5";
     CLI::App app{"Draws a mesh or a scene with order-independent transparency.", "cellist-oit"};
     const auto add = [&](const char* name, std::string& value, const char* what, const char* type) {
         add_option(app, name, value, what, type);
@@ -55,6 +57,12 @@ Options parse_options(int count, const char* const* arguments) {
     add("--epsilon", epsilon, "stop blending where no more than this part of the light passes",
         "E");
     add("--format", format, "colour and depth of fragments", "F");
+    add("--budget", budget, "choose method and setting: PSNR at least, or largest error at most",
+        "40dB|1/255");
+    add("--check-every", check_every, "of the frames that change, check each N-th for the budget",
+        "N");
+    add("--until", until, "time of the last frame, in seconds; the first is at --time", "T");
+    add("--turn", turn, "turn the camera from the first frame to the last", "DEGREES");
     app.add_flag("--reference", options.reference,
                  "compare with a rendering in double precision on the CPU");
     add("--out", out, "picture to write", "FILE.png");
@@ -69,6 +77,19 @@ Options parse_options(int count, const char* const* arguments) {
     frame.read(options);
     options.out = out;
     options.json = json;
+    if (!budget.empty()) {
+        options.budget = parse_budget(budget);
+        for (const char* chosen : {"--method", "--layers", "--epsilon", "--format"})
+            if (app.count(chosen) > 0)
+                throw support::InputError("--budget chooses what " + std::string(chosen) +
+                                          " sets: leave one of them out");
+    }
+    options.check_every = static_cast<std::uint32_t>(
+        support::read_number("--check-every", check_every, 1, 1'000'000));
+    if (!until.empty())
+        options.until =
+            read_between("--until", until, -1e6, 1e6, "seconds from -1000000 to 1000000");
+    options.turn_degrees = read_between("--turn", turn, -1e6, 1e6, "degrees");
     read_method(method, options);
     read_layers(layers, options);
     read_format(format, options);

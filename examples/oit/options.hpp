@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
+#include "budget.hpp"
 #include "frame_options.hpp"
 
 namespace oit {
@@ -11,6 +13,10 @@ namespace oit {
 /// What the command line asks for.
 struct Options : FrameOptions {
     std::string method = "linked";
+    std::optional<Budget> budget = {};  ///< chooses method and setting
+    std::uint32_t check_every = 1;      ///< of the frames that change, within a budget
+    std::optional<double> until = {};   ///< the last frame's time; the first is at `time`
+    double turn_degrees = 0;            ///< from the first frame to the last
     bool reference = false;
     std::filesystem::path out = "oit.png";
     std::filesystem::path json = {};

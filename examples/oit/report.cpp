@@ -98,6 +98,7 @@ void print(const Report& report, std::ostream& out) {
     line("sort + blend") << fixed(report.times.sort_blend_ms, 2) << " ms\n";
     line("frame") << fixed(report.times.frame_ms, 2) << " ms (median of " << options.frames
                   << ")\n";
+    if (report.choice) print(*report.choice, *options.budget, report.kept, out);
     if (options.quality.epsilon > 0) line("early end") << early_end_text(report) << '\n';
     if (report.pixels_nan > 0)
         line("NaN") << grouped(report.pixels_nan) << " pixels, drawn black\n";
@@ -141,6 +142,7 @@ void write_json(const Report& report, const std::filesystem::path& path) {
     json["pixels_nan"] = report.pixels_nan;
     json["device_bytes"] = report.device_bytes;
     json["frames"] = options.frames;
+    if (report.choice) json["budget"] = json_of(*report.choice, *options.budget, report.kept);
     json["time_ms"] = {{"transform", report.times.transform_ms},
                        {"raster_insert", report.times.raster_insert_ms},
                        {"sort_blend", report.times.sort_blend_ms},

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "choice_report.hpp"
 #include "comparison.hpp"
 #include "mesh.hpp"
 #include "options.hpp"
@@ -29,6 +30,8 @@ struct Report {
     float colour_max = 1;  ///< brightest channel of a fragment, at most
     PassTimes times;
     std::optional<Comparison> comparison;
+    std::optional<Choice> choice;  ///< for a budget
+    KeptBudget kept;
 };
 
 /// One screen for people.

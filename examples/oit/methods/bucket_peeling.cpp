@@ -93,6 +93,9 @@ private:
     cellist::Buffer<cl_uint> left_;
 };
 
+// The range of depth, then keys and layers at least once.
+std::uint64_t passes(const SceneMeasure&, const Quality&) { return 3; }
+
 const MethodRegistration bucket_peeling(
     {.name = "bucket_peeling",
      .summary = "a layer of each of 8 or other ranges of depth a pass (Liu et al. 2009)",
@@ -100,7 +103,9 @@ const MethodRegistration bucket_peeling(
      .exact = true,
      .sizes = sizes,
      .refusal = refusal,
-     .make = make_peeling<BucketPeeling>});
+     .make = make_peeling<BucketPeeling>,
+     .bound = bound_of_layers,
+     .passes = passes});
 
 }  // namespace
 }  // namespace oit

@@ -10,13 +10,22 @@ namespace {
 constexpr std::array sizes{1U, 2U, 4U, 8U, 16U, 32U, 64U};
 constexpr std::uint32_t default_slots = 8;
 
+std::uint32_t slots_of(const Quality& quality) {
+    return quality.size.value_or(quality.layers.value_or(default_slots));
+}
+
 std::unique_ptr<Method> make(FragmentSource& source) {
-    const Quality& quality = source.frame().quality;
-    const std::uint32_t slots = quality.size.value_or(quality.layers.value_or(default_slots));
     return make_list_method(source, {.storage = cellist::Storage::fixed,
                                      .overflow = cellist::Overflow::keep_nearest,
-                                     .slots = slots,
+                                     .slots = slots_of(source.frame().quality),
                                      .nearest_by = "key"});
+}
+
+// Its slots hold the nearest layers.
+std::optional<PictureError> bound(const SceneMeasure& scene, const Quality& quality) {
+    Quality nearest = quality;
+    nearest.layers = slots_of(quality);
+    return bound_of_layers(scene, nearest);
 }
 
 const MethodRegistration kbuffer(
@@ -26,7 +35,8 @@ const MethodRegistration kbuffer(
      .exact = false,
      .sizes = sizes,
      .refusal = refuses_nothing,
-     .make = make});
+     .make = make,
+     .bound = bound});
 
 }  // namespace
 }  // namespace oit

@@ -60,7 +60,8 @@ const MethodRegistration stochastic(
      .exact = false,
      .sizes = sizes,
      .refusal = accumulating_refusal,
-     .make = make_accumulating<Stochastic>});
+     .make = make_accumulating<Stochastic>,
+     .passes = two_passes});
 
 }  // namespace
 }  // namespace oit
