@@ -9,6 +9,7 @@
 #include "frame.hpp"
 #include "image.hpp"
 #include "options.hpp"
+#include "picture.hpp"
 #include "progress.hpp"
 #include "reference.hpp"
 #include "renderer.hpp"
@@ -20,20 +21,6 @@ namespace {
 void check_output_paths(const oit::Options& options) {
     support::check_image_path(options.out);
     if (!options.json.empty()) support::check_image_path(options.json);
-}
-
-// Rows of all eyes side by side.
-std::vector<cl_float4> side_by_side(const std::vector<cl_float4>& image, const oit::Frame& frame) {
-    const auto width = static_cast<std::size_t>(frame.width());
-    const auto height = static_cast<std::size_t>(frame.height());
-    std::vector<cl_float4> rows;
-    for (std::size_t y = 0; y < height; ++y)
-        for (std::size_t eye = 0; eye < frame.views.size(); ++eye) {
-            const auto row =
-                image.begin() + static_cast<std::ptrdiff_t>((eye * height + y) * width);
-            rows.insert(rows.end(), row, row + static_cast<std::ptrdiff_t>(width));
-        }
-    return rows;
 }
 
 oit::PassTimes median_times(const std::vector<oit::PassTimes>& frames) {
@@ -89,8 +76,8 @@ void run(const oit::Options& options) {
     report.times = draw_frames(renderer, options.frames);
     const std::vector<cl_float4> image = renderer.image();
     report.pixels_nan = oit::count_nan(image);
-    support::write_png(options.out, side_by_side(image, frame),
-                       options.width * static_cast<int>(frame.views.size()), options.height);
+    support::write_png(options.out, oit::side_by_side(image, frame), oit::picture_width(frame),
+                       frame.height());
 
     report.lengths = renderer.method().lengths();
     report.method_bytes = renderer.method().device_bytes();
