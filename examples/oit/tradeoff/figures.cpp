@@ -5,6 +5,7 @@
 #include <iomanip>
 #include <ostream>
 #include <sstream>
+#include <string>
 
 #include "input_error.hpp"
 #include "number_text.hpp"
@@ -65,11 +66,18 @@ ordered_json or_null(const std::optional<std::uint32_t>& value) {
     return value ? ordered_json(*value) : ordered_json(nullptr);
 }
 
+// The number that people read for a float: 0.35, and not what is added to the digits of a double.
+double as_read(float value) {
+    std::ostringstream text;
+    text << value;
+    return std::stod(text.str());
+}
+
 ordered_json to_json(const Measurement& m, bool on_front) {
     const Quality& quality = m.setting.quality;
     ordered_json json{{"options", text(m.setting)},        {"method", m.setting.method->name},
                       {"exact", m.setting.method->exact},  {"size", or_null(quality.size)},
-                      {"layers", or_null(quality.layers)}, {"epsilon", quality.epsilon},
+                      {"layers", or_null(quality.layers)}, {"epsilon", as_read(quality.epsilon)},
                       {"format", name_of(quality.format)}};
     if (!m.drawn()) {
         json["failure"] = m.failure;
@@ -131,7 +139,7 @@ ordered_json to_json(const Sweep& sweep) {
     json["height"] = options.height;
     json["eyes"] = options.eye_separation ? 2 : 1;
     json["samples"] = options.quality.samples;
-    json["alpha"] = options.alpha;
+    json["alpha"] = as_read(options.alpha);
     json["view"] = {options.orbit.azimuth_degrees, options.orbit.elevation_degrees};
     json["time_s"] = options.time;
     json["opaque_floor"] = options.opaque_floor;

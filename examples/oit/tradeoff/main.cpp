@@ -45,11 +45,15 @@ void run(const oit::TradeoffOptions& options) {
                                   "', so there is nothing to compare");
     sweep.fragments = reference.fragments.size();
     sweep.most_layers = reference.most_layers();
+    sweep.left_out = oit::left_out(frame, options.methods);
 
     std::optional<oit::Pictures> pictures;
     if (!options.html.empty()) pictures.emplace(reference, frame);
     const std::vector<oit::Setting> settings =
         oit::settings_of(frame, sweep.most_layers, options.methods);
+    if (settings.empty())
+        throw support::InputError("the method " + std::string(sweep.left_out.front().method) +
+                                  " cannot draw this: " + sweep.left_out.front().reason);
     for (const oit::Setting& setting : settings) {
         oit::Measurement measurement =
             oit::measure(device, frame, setting, reference, options.runs);
@@ -61,7 +65,6 @@ void run(const oit::TradeoffOptions& options) {
     std::ranges::stable_sort(sweep.measurements, {}, [](const oit::Measurement& measurement) {
         return std::pair(!measurement.drawn(), measurement.milliseconds);
     });
-    sweep.left_out = oit::left_out(frame, options.methods);
 
     oit::print(sweep, std::cout);
     if (!options.json.empty()) oit::write_file(options.json, oit::dump(to_json(sweep), 2) + '\n');
