@@ -80,10 +80,10 @@ public:
          const std::string& name, const Uses&... uses)
         : small_(device, pass_source(device, sampling, source, name, "int"), "raster_draw_small",
                  cellist::type<View>, cellist::type<RasterInstance>, cellist::type<RasterBatch>,
-                 cellist::type<RasterVertex>, cellist::type<RasterBinned>, uses...),
-          tiles_(device, pass_source(device, sampling, source, name, "long"), "raster_draw_tiles",
+                 cellist::type<RasterVertex>, cellist::type<RasterBlock>, uses...),
+          blocks_(device, pass_source(device, sampling, source, name, "long"), "raster_draw_blocks",
                  cellist::type<View>, cellist::type<RasterInstance>, cellist::type<RasterBatch>,
-                 cellist::type<RasterVertex>, cellist::type<RasterBinned>, uses...) {}
+                 cellist::type<RasterVertex>, cellist::type<RasterBlock>, uses...) {}
 
 private:
     friend class Triangles;
@@ -91,7 +91,7 @@ private:
                                        std::string_view source, const std::string& name,
                                        const std::string& integer);
     cellist::Kernel small_;
-    cellist::Kernel tiles_;
+    cellist::Kernel blocks_;
 };
 
 /// Instances of meshes, projected into one or more views of the same size: a view an eye.
@@ -127,8 +127,8 @@ private:
     cellist::Buffer<RasterVertex> vertices_;
 };
 
-/// The triangles of some of the instances: sorts the large ones into screen tiles, and draws all any
-/// number of times.
+/// The triangles of some of the instances: divides the large ones into blocks of pixels, and draws all
+/// any number of times.
 class Triangles {
 public:
     /// `chosen` are indices of the projection's instances. Refers to the projection, which must
@@ -136,32 +136,38 @@ public:
     Triangles(const cellist::Device& device, const Projection& projection,
               std::span<const std::size_t> chosen);
 
-    /// Fills the tiles. Blocks until they are filled.
+    /// Puts the blocks of the large triangles into a queue. Does not block.
     void bin();
+
+    /// Whether the queue had room for all blocks. If not, it has now, and whoever has drawn since bin()
+    /// begins again there. Blocks.
+    [[nodiscard]] bool complete();
 
     /// Draws with a pass whose RASTER_TARGET takes `targets`. Does not block.
     template <class... Targets>
     void draw(Pass& pass, const Targets&... targets) {
         const Projection& p = projection_;
         const auto run = [&](cellist::Kernel& kernel, const cellist::Range& range,
-                             const auto&... bins) {
-            kernel.run(range, targets..., bins..., p.views_, p.instances_, p.vertices_,
+                             const auto&... queue) {
+            kernel.run(range, targets..., queue..., p.views_, p.instances_, p.vertices_,
                        p.geometry_.positions(), p.geometry_.indices(), batches_);
         };
         run(pass.small_, triangles());
-        if (has_bins_) run(pass.tiles_, tile_rows(), bins_);
+        run(pass.blocks_, groups_, count_, queue_, capacity());
     }
 
     [[nodiscard]] std::uint64_t device_bytes() const;
 
 private:
     [[nodiscard]] cellist::Range triangles() const;
-    [[nodiscard]] cellist::Range tile_rows() const;
+    [[nodiscard]] cl_uint capacity() const { return static_cast<cl_uint>(queue_.size()); }
 
+    const cellist::Device& device_;
     const Projection& projection_;
+    cellist::Range groups_;
     cellist::Buffer<RasterBatch> batches_;
-    cellist::Lists<RasterBinned> bins_;
-    bool has_bins_ = false;
+    cellist::Buffer<RasterBlock> queue_;
+    cellist::Buffer<cl_uint> count_;
 };
 
 }  // namespace raster

@@ -62,12 +62,13 @@ struct RasterVertex {
 };
 CELLIST_STRUCT(RasterVertex, x, y, w, outside);
 
-/// A piece of a large or clipped triangle in a tile's list.
-struct RasterBinned {
+/// A block of pixels that a piece of a large or clipped triangle touches.
+struct RasterBlock {
     cl_uint triangle;
     cl_uint piece;
+    cl_int x, y;  ///< its upper left pixel
 };
-CELLIST_STRUCT(RasterBinned, triangle, piece);
+CELLIST_STRUCT(RasterBlock, triangle, piece, x, y);
 
 #define RASTER_FMA(a, b, c) std::fma(a, b, c)
 #define RASTER_RINT(a) std::rint(a)
