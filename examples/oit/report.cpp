@@ -94,8 +94,7 @@ void print(const Report& report, std::ostream& out) {
     line("transform") << fixed(report.passes.transform_ms, 2) << " ms\n";
     line("raster + insert") << fixed(report.passes.raster_insert_ms, 2) << " ms\n";
     line("sort + blend") << fixed(report.passes.sort_blend_ms, 2) << " ms\n";
-    line("frame") << fixed(report.frame_ms, 2) << " ms (median of " << options.frames
-                  << ")\n";
+    line("frame") << fixed(report.frame_ms, 2) << " ms (median of " << options.frames << ")\n";
     if (options.quality.epsilon > 0) line("early end") << early_end_text(report) << '\n';
     if (report.pixels_nan > 0)
         line("NaN") << grouped(report.pixels_nan) << " pixels, drawn black\n";

@@ -1,18 +1,24 @@
-// Puts the blocks of pixels that large triangles and the pieces of clipped ones touch into a queue.
+// Puts large triangles and the pieces of clipped ones into a queue, and the blocks of pixels that they touch
+// into another.
 //
-//   count     blocks so far, from 0; those that the queue has no room for are counted as well
-//   capacity  of the queue
+//   counts           entries so far, from 0; those that a queue has no room for are counted as well
+//   ..._capacity     of the queues
 
-// Blocks that a work-item looks at alone. Where a triangle's bounding box has more, all work-items of the
-// group share them.
-#define RASTER_OWN_BLOCKS 16
+// Work-items that look for the blocks of a triangle together: on CPUs, where a block has one, each is
+// faster alone.
+#define RASTER_BIN_TEAM (RASTER_LANES == 1 ? 1u : 8u)
 
-// More blocks than this are not counted on, so that the counter cannot wrap.
-#define RASTER_BLOCKS_MAX 0x80000000u
+// Nothing more is counted beyond this, so that the counters cannot wrap.
+#define RASTER_COUNT_MAX 0x80000000u
 
-#define RASTER_QUEUE                                                                               \
-    volatile global uint *count, global RasterBlock *queue, const uint capacity
-#define RASTER_QUEUE_PASS count, queue, capacity
+#define RASTER_QUEUES                                                                              \
+    volatile global RasterCounts *counts, global RasterTriangle *triangles,                        \
+        const uint triangles_capacity, global RasterBlock *blocks, const uint blocks_capacity
+
+// Takes `wanted` entries of a queue, and returns the first.
+static inline uint raster_take(volatile global uint* count, uint wanted) {
+    return *count < RASTER_COUNT_MAX ? atomic_add(count, wanted) : RASTER_COUNT_MAX;
+}
 
 // The blocks of a bounding box, row by row.
 typedef struct {
@@ -29,18 +35,14 @@ static inline RasterBox raster_box(const RasterTriangle* t) {
     return box;
 }
 
-static inline RasterBlock raster_block(const RasterBox* box, uint i, uint triangle, uint piece) {
-    const RasterBlock block = {triangle, piece,
-                               (box->x + (int)i % box->across) * RASTER_BLOCK_PIXELS,
-                               (box->y + (int)i / box->across) * RASTER_BLOCK_PIXELS};
-    return block;
-}
-
-// False where no sample of the block is covered, because all lie outside of one edge.
-static inline bool raster_touches(const RasterTriangle* t, const RasterBlock* block) {
+// The place of block i. CELLIST_NONE where no sample of it is covered, because all lie outside of one
+// edge.
+static inline uint raster_touched(const RasterTriangle* t, const RasterBox* box, uint i) {
+    const int block_x = (box->x + (int)i % box->across) * RASTER_BLOCK_PIXELS;
+    const int block_y = (box->y + (int)i / box->across) * RASTER_BLOCK_PIXELS;
     const int reach = RASTER_SAMPLES == 1 ? 0 : RASTER_REACH;
-    const int left = raster_centre(block->x) - reach;
-    const int top = raster_centre(block->y) - reach;
+    const int left = raster_centre(block_x) - reach;
+    const int top = raster_centre(block_y) - reach;
     const int side = (RASTER_BLOCK_PIXELS - 1) * RASTER_SUBPIXELS + 2 * reach;
     bool touches = true;
     for (int i = 0; i < 3; ++i) {
@@ -48,78 +50,79 @@ static inline bool raster_touches(const RasterTriangle* t, const RasterBlock* bl
         const int y = raster_dx(t, i) > 0 ? top + side : top;
         touches = touches && raster_edge(t, i, x, y) >= raster_bias(t, i);
     }
-    return touches;
+    return touches ? block_x + 65536u * block_y : CELLIST_NONE;
 }
 
-// Every RASTER_BATCH-th block of all pieces of a triangle, from block `lane` on.
-static void raster_share(RASTER_QUEUE, RASTER_SCENE, uint triangle, uint lane) {
-    RasterTriangle t;
-    int outside_all, outside_any;
-    raster_load(RASTER_SCENE_PASS, triangle, &t, &outside_all, &outside_any);
-    const View view = views[instances[t.instance].eye];
-    RasterPolygon polygon;
-    polygon.count = 3;
-    if (outside_any) raster_clip_triangle(RASTER_SCENE_PASS, &view, &t, &polygon);
-    for (int piece = 0; piece + 2 < polygon.count; ++piece) {
-        if (outside_any) raster_piece(&view, &polygon, piece, &t);
-        raster_bound(&view, &t);
-        if (!raster_visible(&t) || !raster_orient(&t)) continue;
-        const RasterBox box = raster_box(&t);
-        for (uint i = lane; i < box.all; i += RASTER_BATCH) {
-            const RasterBlock block = raster_block(&box, i, triangle, piece);
-            if (!raster_touches(&t, &block) || *count >= RASTER_BLOCKS_MAX) continue;
-            const uint at = atomic_inc(count);
-            if (at < capacity) queue[at] = block;
-        }
-    }
+// Makes a triangle ready to be scanned. False where it is not visible.
+static inline bool raster_ready(const View* view, RasterTriangle* t) {
+    raster_bound(view, t);
+    if (!raster_visible(t) || !raster_orient(t)) return false;
+    raster_invert(t);
+    return true;
 }
 
-// A work-item a triangle.
-kernel void raster_bin(RASTER_QUEUE, RASTER_SCENE) {
-    local uint shared[RASTER_BATCH];  // triangles that the group shares
-    local uint shared_count, wanted, first;
-    const uint lane = get_local_id(0), triangle = get_global_id(0);
-    if (lane == 0) shared_count = wanted = 0;
+// A work-item a triangle; then the group's triangles are shared out anew, for their blocks.
+kernel void raster_bin(RASTER_QUEUES, RASTER_SCENE) {
+    local uint listed[RASTER_BATCH * RASTER_PIECES_MAX];  // of the queue
+    local uint listed_count, unclipped, block_count, first;
+    const uint item = get_local_id(0);
+    if (item == 0) listed_count = unclipped = block_count = 0;
     barrier(CLK_LOCAL_MEM_FENCE);
 
     RasterTriangle t;
+    uint own = CELLIST_NONE;
     int outside_all, outside_any;
-    RasterBox box;
-    bool owns = false;
-    if (raster_load(RASTER_SCENE_PASS, triangle, &t, &outside_all, &outside_any) && !outside_all) {
-        bool shares = outside_any;
+    if (raster_load(RASTER_SCENE_PASS, get_global_id(0), &t, &outside_all, &outside_any) &&
+        !outside_all) {
+        const View view = views[instances[t.instance].eye];
         if (!outside_any) {
-            const View view = views[instances[t.instance].eye];
-            raster_bound(&view, &t);
-            if (!raster_small(&t) && raster_visible(&t) && raster_orient(&t)) {
-                box = raster_box(&t);
-                owns = box.all <= RASTER_OWN_BLOCKS;
-                shares = !owns;
+            if (!raster_small(&t) && raster_ready(&view, &t)) own = atomic_inc(&unclipped);
+        } else {
+            RasterPolygon polygon;
+            raster_clip_triangle(RASTER_SCENE_PASS, &view, &t, &polygon);
+            for (int piece = 0; piece + 2 < polygon.count; ++piece) {
+                RasterTriangle clipped = t;
+                raster_piece(&view, &polygon, piece, &clipped);
+                if (!raster_ready(&view, &clipped)) continue;
+                const uint at = raster_take(&counts->triangles, 1);
+                if (at >= triangles_capacity) continue;
+                triangles[at] = clipped;
+                listed[atomic_inc(&listed_count)] = at;
             }
         }
-        if (shares) shared[atomic_inc(&shared_count)] = triangle;
-    }
-    uint at = 0, end = 0;
-    if (owns) {
-        for (uint i = 0; i < box.all; ++i) {
-            const RasterBlock block = raster_block(&box, i, triangle, 0);
-            if (raster_touches(&t, &block)) ++end;
-        }
-        at = atomic_add(&wanted, end);
     }
     barrier(CLK_LOCAL_MEM_FENCE);
-    if (lane == 0)
-        first = wanted != 0 && *count < RASTER_BLOCKS_MAX ? atomic_add(count, wanted) : capacity;
+    if (item == 0 && unclipped != 0) first = raster_take(&counts->triangles, unclipped);
     barrier(CLK_LOCAL_MEM_FENCE);
-    if (owns && first < capacity) {
-        at += first;
-        for (uint i = 0; i < box.all; ++i) {
-            const RasterBlock block = raster_block(&box, i, triangle, 0);
-            if (!raster_touches(&t, &block)) continue;
-            if (at < capacity) queue[at] = block;
-            ++at;
+    if (own != CELLIST_NONE && first + own < triangles_capacity) {
+        triangles[first + own] = t;
+        listed[atomic_inc(&listed_count)] = first + own;
+    }
+    barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
+
+    const uint count = listed_count;
+    const uint team = item / RASTER_BIN_TEAM, lane = item % RASTER_BIN_TEAM;
+    uint touched = 0;
+    for (uint n = team; n < count; n += RASTER_BATCH / RASTER_BIN_TEAM) {
+        const RasterTriangle listed_one = triangles[listed[n]];
+        const RasterBox box = raster_box(&listed_one);
+        for (uint i = lane; i < box.all; i += RASTER_BIN_TEAM)
+            touched += raster_touched(&listed_one, &box, i) != CELLIST_NONE;
+    }
+    uint next = touched != 0 ? atomic_add(&block_count, touched) : 0;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (item == 0 && block_count != 0) first = raster_take(&counts->blocks, block_count);
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (touched == 0) return;
+    next += first;
+    for (uint n = team; n < count; n += RASTER_BATCH / RASTER_BIN_TEAM) {
+        const RasterTriangle listed_one = triangles[listed[n]];
+        const RasterBox box = raster_box(&listed_one);
+        for (uint i = lane; i < box.all; i += RASTER_BIN_TEAM) {
+            const RasterBlock block = {listed[n], raster_touched(&listed_one, &box, i)};
+            if (block.place == CELLIST_NONE) continue;
+            if (next < blocks_capacity) blocks[next] = block;
+            ++next;
         }
     }
-    for (uint i = 0; i < shared_count; ++i)
-        raster_share(RASTER_QUEUE_PASS, RASTER_SCENE_PASS, shared[i], lane);
 }

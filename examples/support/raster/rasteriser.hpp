@@ -80,10 +80,12 @@ public:
          const std::string& name, const Uses&... uses)
         : small_(device, pass_source(device, sampling, source, name, "int"), "raster_draw_small",
                  cellist::type<View>, cellist::type<RasterInstance>, cellist::type<RasterBatch>,
-                 cellist::type<RasterVertex>, cellist::type<RasterBlock>, uses...),
+                 cellist::type<RasterVertex>, cellist::type<RasterTriangle>,
+                 cellist::type<RasterBlock>, cellist::type<RasterCounts>, uses...),
           blocks_(device, pass_source(device, sampling, source, name, "long"), "raster_draw_blocks",
-                 cellist::type<View>, cellist::type<RasterInstance>, cellist::type<RasterBatch>,
-                 cellist::type<RasterVertex>, cellist::type<RasterBlock>, uses...) {}
+                  cellist::type<View>, cellist::type<RasterInstance>, cellist::type<RasterBatch>,
+                  cellist::type<RasterVertex>, cellist::type<RasterTriangle>,
+                  cellist::type<RasterBlock>, cellist::type<RasterCounts>, uses...) {}
 
 private:
     friend class Triangles;
@@ -136,11 +138,11 @@ public:
     Triangles(const cellist::Device& device, const Projection& projection,
               std::span<const std::size_t> chosen);
 
-    /// Puts the blocks of the large triangles into a queue. Does not block.
+    /// Puts the large triangles and their blocks into queues. Does not block.
     void bin();
 
-    /// Whether the queue had room for all blocks. If not, it has now, and whoever has drawn since bin()
-    /// begins again there. Blocks.
+    /// Whether the queues had room for all. If not, they have more now, and whoever has drawn since
+    /// bin() begins again there. Blocks.
     [[nodiscard]] bool complete();
 
     /// Draws with a pass whose RASTER_TARGET takes `targets`. Does not block.
@@ -153,21 +155,27 @@ public:
                        p.geometry_.positions(), p.geometry_.indices(), batches_);
         };
         run(pass.small_, triangles());
-        run(pass.blocks_, groups_, count_, queue_, capacity());
+        run(pass.blocks_, groups_, counts_, queue_, capacity_of(queue_), blocks_,
+            capacity_of(blocks_));
     }
 
     [[nodiscard]] std::uint64_t device_bytes() const;
 
 private:
     [[nodiscard]] cellist::Range triangles() const;
-    [[nodiscard]] cl_uint capacity() const { return static_cast<cl_uint>(queue_.size()); }
+    template <class T>
+    [[nodiscard]] static cl_uint capacity_of(const cellist::Buffer<T>& queue) {
+        return static_cast<cl_uint>(queue.size());
+    }
 
     const cellist::Device& device_;
     const Projection& projection_;
     cellist::Range groups_;
     cellist::Buffer<RasterBatch> batches_;
-    cellist::Buffer<RasterBlock> queue_;
-    cellist::Buffer<cl_uint> count_;
+    cellist::Buffer<RasterTriangle> queue_;
+    cellist::Buffer<RasterBlock> blocks_;
+    cellist::Buffer<RasterCounts> counts_;
+    cellist::Pending<std::vector<RasterCounts>> counted_;
 };
 
 }  // namespace raster
