@@ -36,7 +36,7 @@ kernel void oit_resolve_lists(CELLIST_LISTS(OIT_NODE, fragments) OIT_LONGER, OIT
 #ifdef OIT_SORTED
     if (found == OIT_SORTED) *longer = 1;
 #ifdef OIT_LAYERS
-    found = min(found, OIT_LAYERS);
+    found = min(found, (uint)OIT_LAYERS);
 #endif
 #endif
     for (uint i = 0; i < found && !oit_done(&lights, &pixel); ++i) {
