@@ -49,7 +49,7 @@ void draw_frames(oit::Renderer& renderer, std::uint32_t count, oit::Report& repo
         progress.update(0.5 + 0.5 * i / count);
         passes.push_back(renderer.draw_by_pass());
     }
-    report.frame_ms = median(frames);
+    report.frame_ms = support::median(std::move(frames));
     report.passes = median_times(passes);
 }
 
