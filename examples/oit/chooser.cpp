@@ -149,8 +149,8 @@ private:
     }
 
     [[nodiscard]] bool is_predicted_slow(const Setting& setting) const {
-        const auto family = family_ms_.find(setting.method->name);
-        if (family != family_ms_.end()) return family->second > family_margin * best_ms_;
+        if (const auto family = family_ms_.find(setting.method->name); family != family_ms_.end())
+            return family->second > family_margin * best_ms_;
         const auto passes =
             static_cast<double>(setting.method->passes(choice_.scene, setting.quality));
         return passes * part_of_pass * pass_ms_ > family_margin * best_ms_;
@@ -162,7 +162,8 @@ private:
         try {
             contender = std::make_unique<Contender>(device_, frame_, candidate);
             contender->renderer.draw();  // builds the kernels' last variants and grows the pool
-            time(*contender, 2);
+            contender->renderer.draw();
+            time(*contender);
         } catch (const std::exception& error) {
             const std::string message = error.what();
             candidate.fate = Fate::failed;
@@ -170,16 +171,14 @@ private:
             choice_.candidates.push_back(candidate);
             return;
         }
-        ++choice_.draws;
-        const double ms = contender->ms();
-        family_ms_.try_emplace(setting.method->name, ms);
+        note(*contender);
         if (is_out(*contender, first_margin)) return leave(*contender, Fate::slower);
         compare(*contender, bound);
         const bool met = budget_.met_by(contender->errors.told);
         if (met) {
             ++met_[{setting.method->name, series_of(setting)}];
-            best_ms_ = std::min(best_ms_, ms);
             contenders_.push_back(std::move(contender));
+            update_best();
             drop_slower(first_margin);
             return;
         }
@@ -196,15 +195,36 @@ private:
         candidate.error = contender.errors.told;
     }
 
-    void time(Contender& contender, int least_draws) {
-        int left = least_draws;
-        for (int drawn = 0; drawn < left; ++drawn) {
-            const PassTimes times = contender.renderer.draw();
-            contender.least.add(times.frame_ms);
-            if (pass_ms_ == 0) pass_ms_ = times.raster_insert_ms;
-            left = draws_of(contender.ms(), least_draws);
-            ++choice_.draws;
+    // By turns with the fastest so far: what else the machine does disturbs both, so the ratio of their
+    // times says more than either.
+    void time(Contender& contender) {
+        support::Least own, other;
+        int draws = 3;
+        for (int drawn = 0; drawn < draws; ++drawn) {
+            own.add(contender.renderer.draw());
+            if (pass_ms_ == 0) pass_ms_ = contender.renderer.draw_by_pass().raster_insert_ms;
+            if (!contenders_.empty()) other.add(contenders_.front()->renderer.draw());
+            draws = draws_of(own.ms(), 3);
+            choice_.draws += contenders_.empty() ? 1U : 2U;
         }
+        contender.least.add(own.ms());
+        if (contenders_.empty()) return;
+        contender.least.add(contenders_.front()->ms() * own.ms() / other.ms());
+        contenders_.front()->least.add(other.ms());
+    }
+
+    void note(const Contender& contender) {
+        const auto [family, is_new] =
+            family_ms_.try_emplace(contender.candidate.setting.method->name, contender.ms());
+        family->second = std::min(family->second, contender.ms());
+    }
+
+    // The fastest comes first.
+    void update_best() {
+        std::ranges::stable_sort(contenders_, {},
+                                 [](const auto& contender) { return contender->ms(); });
+        best_ms_ = contenders_.front()->ms();
+        for (const auto& contender : contenders_) note(*contender);
     }
 
     // ---- all that are left
@@ -233,10 +253,10 @@ private:
             const int draws = draws_of(best_ms_, 2 << round);
             for (int turn = 0; turn < draws; ++turn)
                 for (const auto& contender : contenders_) {
-                    contender->least.add(contender->renderer.draw().frame_ms);
-                    best_ms_ = std::min(best_ms_, contender->ms());
+                    contender->least.add(contender->renderer.draw());
                     ++choice_.draws;
                 }
+            update_best();
             drop_slower(1 + (first_margin - 1) / (2 << round));
         }
     }
@@ -302,7 +322,7 @@ Choice Chooser::choose() {
     return choice;
 }
 
-PassTimes Chooser::draw_changed() {
+double Chooser::draw_changed() {
     winner_->frame.time = frame_.time;
     winner_->frame.views = frame_.views;
     return winner_->renderer.draw_changed();

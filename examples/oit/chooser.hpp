@@ -62,7 +62,7 @@ public:
     Choice choose();
 
     /// Draws the frame, which now has another time or other views, with what was chosen.
-    PassTimes draw_changed();
+    double draw_changed();
     /// Surveys the frame as it is now, and compares what was drawn of it. Blocks.
     [[nodiscard]] PictureErrors check();
 

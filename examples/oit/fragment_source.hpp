@@ -35,8 +35,12 @@ public:
     /// Projects the vertices. Does not block.
     void transform();
 
-    /// Sorts large triangles into tiles and draws the opaque surfaces. Blocks.
+    /// Divides large triangles into blocks and draws the opaque surfaces. Does not block.
     void prepare();
+
+    /// Whether everything was drawn since prepare(). If not, there is room for it now, and the frame
+    /// begins again there. Blocks.
+    [[nodiscard]] bool complete();
 
     /// The kernels of a pass: `source` defines OIT_TARGET, OIT_TARGET_PASS and oit_store (see
     /// surface.clh), where OIT_PASS is defined. `uses` are containers and types, as in cellist::Kernel.

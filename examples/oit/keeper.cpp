@@ -33,13 +33,13 @@ bool Keeper::has_changed() const {
 Keeper::Drawn Keeper::draw() {
     Drawn drawn{.met = choice_.met, .errors = choice_.errors};
     if (!has_changed()) {
-        drawn.times = renderer_->draw();
+        drawn.frame_ms = renderer_->draw();
         return drawn;
     }
     const Frame& frame = chooser_.frame();
     now_.time = frame.time;
     now_.views = frame.views;
-    drawn.times = chooser_.draw_changed();
+    drawn.frame_ms = chooser_.draw_changed();
     if (++unchecked_ < check_every_) return drawn;
     unchecked_ = 0;
     drawn.checked = true;
@@ -50,7 +50,7 @@ Keeper::Drawn Keeper::draw() {
     drawn.chosen_again = true;
     drawn.met = choice_.met;
     drawn.errors = choice_.errors;
-    drawn.times = renderer_->draw();
+    drawn.frame_ms = renderer_->draw();
     return drawn;
 }
 

@@ -16,7 +16,7 @@ class Keeper {
 public:
     /// A frame that was drawn.
     struct Drawn {
-        PassTimes times = {};
+        double frame_ms = 0;
         bool checked = false;
         bool chosen_again = false;
         bool met = true;
@@ -33,7 +33,7 @@ public:
 
     /// The last choice.
     [[nodiscard]] const Choice& choice() const { return choice_; }
-    [[nodiscard]] const Renderer& renderer() const { return *renderer_; }
+    [[nodiscard]] Renderer& renderer() const { return *renderer_; }
 
 private:
     void choose();

@@ -11,6 +11,7 @@
 #include "image.hpp"
 #include "keeper.hpp"
 #include "options.hpp"
+#include "picture.hpp"
 #include "progress.hpp"
 #include "reference.hpp"
 #include "renderer.hpp"
@@ -24,20 +25,6 @@ void check_output_paths(const oit::Options& options) {
     if (!options.json.empty()) support::check_image_path(options.json);
 }
 
-// Rows of all eyes side by side.
-std::vector<cl_float4> side_by_side(const std::vector<cl_float4>& image, const oit::Frame& frame) {
-    const auto width = static_cast<std::size_t>(frame.width());
-    const auto height = static_cast<std::size_t>(frame.height());
-    std::vector<cl_float4> rows;
-    for (std::size_t y = 0; y < height; ++y)
-        for (std::size_t eye = 0; eye < frame.views.size(); ++eye) {
-            const auto row =
-                image.begin() + static_cast<std::ptrdiff_t>((eye * height + y) * width);
-            rows.insert(rows.end(), row, row + static_cast<std::ptrdiff_t>(width));
-        }
-    return rows;
-}
-
 oit::PassTimes median_times(const std::vector<oit::PassTimes>& frames) {
     const auto of = [&](double oit::PassTimes::*pass) {
         std::vector<double> values;
@@ -45,7 +32,7 @@ oit::PassTimes median_times(const std::vector<oit::PassTimes>& frames) {
         return support::median(std::move(values));
     };
     return {of(&oit::PassTimes::transform_ms), of(&oit::PassTimes::raster_insert_ms),
-            of(&oit::PassTimes::sort_blend_ms), of(&oit::PassTimes::frame_ms)};
+            of(&oit::PassTimes::sort_blend_ms)};
 }
 
 // Puts the frame at its moment: the i-th of `count`.
@@ -60,18 +47,29 @@ void set_moment(oit::Frame& frame, const oit::Options& options, std::uint32_t i,
     frame.views = oit::make_views(moment);
 }
 
-// Calls draw() for each moment.
-oit::PassTimes draw_frames(oit::Frame& frame, const oit::Options& options,
-                           const std::function<oit::PassTimes()>& draw) {
+// Calls draw() for each moment. The median of its milliseconds.
+double draw_frames(oit::Frame& frame, const oit::Options& options,
+                   const std::function<double()>& draw) {
     support::Progress progress("drawing");
     progress.update(0);
-    std::vector<oit::PassTimes> frames;
+    std::vector<double> frames;
     for (std::uint32_t i = 0; i < options.frames; ++i) {
         progress.update(static_cast<double>(i) / options.frames);
         set_moment(frame, options, i, options.frames);
         frames.push_back(draw());
     }
-    return median_times(frames);
+    return support::median(std::move(frames));
+}
+
+// Draws the last moment again, pass by pass.
+oit::PassTimes draw_passes(oit::Renderer& renderer, std::uint32_t count) {
+    support::Progress progress("drawing by passes");
+    std::vector<oit::PassTimes> passes;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        progress.update(static_cast<double>(i) / count);
+        passes.push_back(renderer.draw_by_pass());
+    }
+    return median_times(passes);
 }
 
 oit::Comparison compare_with_reference(const oit::Frame& frame, const oit::Renderer& renderer,
@@ -84,19 +82,22 @@ oit::Comparison compare_with_reference(const oit::Frame& frame, const oit::Rende
 
 void draw_with_method(oit::Report& report, oit::Renderer& renderer, oit::Frame& frame) {
     renderer.draw();  // builds the kernels' last variants and grows the pool
+    renderer.draw();
     const bool changes = report.options.until || report.options.turn_degrees != 0;
-    report.times = draw_frames(frame, report.options, [&] {
+    report.frame_ms = draw_frames(frame, report.options, [&] {
         return changes ? renderer.draw_changed() : renderer.draw();
     });
+    report.passes = draw_passes(renderer, report.options.frames);
 }
 
 void draw_within_budget(oit::Report& report, oit::Keeper& keeper, oit::Frame& frame) {
     oit::KeptBudget& kept = report.kept;
-    report.times = draw_frames(frame, report.options, [&] {
+    report.frame_ms = draw_frames(frame, report.options, [&] {
         const oit::Keeper::Drawn drawn = keeper.draw();
         kept.add(drawn, frame.time, *report.options.budget);
-        return drawn.times;
+        return drawn.frame_ms;
     });
+    report.passes = draw_passes(keeper.renderer(), report.options.frames);
     report.choice = keeper.choice();
     report.options.method = oit::method_text(report.choice->setting);
     report.options.quality = report.choice->setting.quality;
@@ -116,8 +117,8 @@ void write(oit::Report& report, const oit::Frame& frame, const oit::Renderer& re
     report.colour_max = renderer.needs().colour_max;
     const std::vector<cl_float4> image = renderer.image();
     report.pixels_nan = oit::count_nan(image);
-    support::write_png(options.out, side_by_side(image, frame),
-                       options.width * static_cast<int>(frame.views.size()), options.height);
+    support::write_png(options.out, oit::side_by_side(image, frame), oit::picture_width(frame),
+                       frame.height());
     report.lengths = renderer.method().lengths();
     report.method_bytes = renderer.method().device_bytes();
     report.device_bytes = renderer.device_bytes();

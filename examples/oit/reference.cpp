@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "input_error.hpp"
 #include "node_layout.hpp"
 #include "reference_blend.hpp"
 #include "reference_raster.hpp"
@@ -275,6 +276,8 @@ std::uint64_t Reference::most_layers() const {
 }
 
 Reference draw_reference(const Frame& frame, const ReferenceOptions& options) {
+    if (needs_of(frame).has(Blend::user) && !options.blend)
+        throw support::InputError("a blend function in OpenCL C has no reference to compare with");
     return Painter(frame, options).draw();
 }
 

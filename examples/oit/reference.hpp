@@ -45,7 +45,8 @@ struct ReferenceOptions {
 
 /// Draws a frame on the CPU: snapped geometry as on the device, everything else in double
 /// precision, exactly sorted. All fragments of Quality::layers are blended, whatever epsilon and
-/// node format are. One thread.
+/// node format are. Throws InputError where a user's function blends on the device and none is given
+/// for here. One thread.
 [[nodiscard]] Reference draw_reference(const Frame& frame, const ReferenceOptions& options = {});
 
 }  // namespace oit

@@ -19,31 +19,58 @@ std::unique_ptr<Method> make_method(FragmentSource& source, const MethodInfo& in
 Renderer::Renderer(const cellist::Device& device, const Frame& frame, const MethodInfo& method)
     : device_(device), source_(device, frame), method_(make_method(source_, method)) {}
 
-PassTimes Renderer::draw() {
+void Renderer::store() {
+    source_.prepare();
+    method_->store();
+}
+
+void Renderer::resolve() {
+    method_->resolve();
+    source_.finish();
+}
+
+bool Renderer::complete() {
+    const bool drawn = source_.complete();
+    return method_->complete() && drawn;
+}
+
+double Renderer::draw() {
     device_.finish();
     const support::Stopwatch stopwatch;
     source_.transform();
+    do {
+        store();
+        resolve();
+    } while (!complete());
     device_.finish();
-    const double transformed = stopwatch.ms();
-    source_.prepare();
-    method_->store();
-    device_.finish();
-    const double stored = stopwatch.ms();
-    method_->resolve();
-    source_.finish();
-    device_.finish();
-    const double end = stopwatch.ms();
-    return {transformed, stored - transformed, end - stored, end};
+    return stopwatch.ms();
 }
 
-PassTimes Renderer::draw_at(double time) {
+double Renderer::draw_at(double time) {
     source_.move_to(time);
     return draw();
 }
 
-PassTimes Renderer::draw_changed() {
+double Renderer::draw_changed() {
     source_.follow();
     return draw();
+}
+
+PassTimes Renderer::draw_by_pass() {
+    PassTimes times;
+    const auto measure = [&](double PassTimes::*pass, auto enqueue) {
+        device_.finish();
+        const support::Stopwatch stopwatch;
+        enqueue();
+        device_.finish();
+        times.*pass = stopwatch.ms();
+    };
+    measure(&PassTimes::transform_ms, [&] { source_.transform(); });
+    do {
+        measure(&PassTimes::raster_insert_ms, [&] { store(); });
+        measure(&PassTimes::sort_blend_ms, [&] { resolve(); });
+    } while (!complete());
+    return times;
 }
 
 }  // namespace oit

@@ -11,12 +11,11 @@
 
 namespace oit {
 
-/// Milliseconds of the passes of a frame.
+/// Milliseconds of the passes of a frame, each alone on the device.
 struct PassTimes {
     double transform_ms = 0;
     double raster_insert_ms = 0;  ///< binning, the opaque passes, shading and storing
     double sort_blend_ms = 0;
-    double frame_ms = 0;  ///< from clearing to the blended image on the device
 };
 
 /// Draws a frame on a device with one of the methods.
@@ -28,13 +27,15 @@ public:
     Renderer(const cellist::Device& device, const Frame& frame,
              const MethodInfo& method = method_named("linked"));
 
-    /// Draws once, and blocks until the image is there.
-    PassTimes draw();
+    /// Draws once, and blocks until the image is there: milliseconds from clearing to the image.
+    double draw();
     /// The same at another time of the scene, in seconds.
-    PassTimes draw_at(double time);
+    double draw_at(double time);
+    /// The same with a wait behind each pass, so that a frame takes longer.
+    PassTimes draw_by_pass();
 
     /// The same where the frame has another time, or other views of the same size.
-    PassTimes draw_changed();
+    double draw_changed();
 
     /// The linear image, eye by eye, row by row from the top.
     [[nodiscard]] std::vector<cl_float4> image() const { return source_.image().download(); }
@@ -49,6 +50,10 @@ public:
     }
 
 private:
+    void store();
+    void resolve();
+    [[nodiscard]] bool complete();
+
     const cellist::Device& device_;
     FragmentSource source_;
     std::unique_ptr<Method> method_;

@@ -4,29 +4,15 @@
 #include <fstream>
 #include <iomanip>
 #include <ostream>
-#include <sstream>
 
 #include <nlohmann/json.hpp>
 
 #include "input_error.hpp"
+#include "number_text.hpp"
 #include "setting.hpp"
 
 namespace oit {
 namespace {
-
-std::string grouped(std::uint64_t value) {
-    std::string digits = std::to_string(value);
-    for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, ",");
-    return digits;
-}
-
-std::string fixed(double value, int decimals) {
-    std::ostringstream out;
-    out << std::fixed << std::setprecision(decimals) << value;
-    return out.str();
-}
-
-std::string megabytes(std::uint64_t bytes) { return fixed(static_cast<double>(bytes) / 1e6, 1); }
 
 std::string dropped_text(const support::MeshDrops& drops) {
     std::string text;
@@ -93,11 +79,10 @@ void print(const Report& report, std::ostream& out) {
     }
     line("memory") << megabytes(report.method_bytes) << " MB of lists, "
                    << megabytes(report.device_bytes) << " MB in all\n";
-    line("transform") << fixed(report.times.transform_ms, 2) << " ms\n";
-    line("raster + insert") << fixed(report.times.raster_insert_ms, 2) << " ms\n";
-    line("sort + blend") << fixed(report.times.sort_blend_ms, 2) << " ms\n";
-    line("frame") << fixed(report.times.frame_ms, 2) << " ms (median of " << options.frames
-                  << ")\n";
+    line("transform") << fixed(report.passes.transform_ms, 2) << " ms\n";
+    line("raster + insert") << fixed(report.passes.raster_insert_ms, 2) << " ms\n";
+    line("sort + blend") << fixed(report.passes.sort_blend_ms, 2) << " ms\n";
+    line("frame") << fixed(report.frame_ms, 2) << " ms (median of " << options.frames << ")\n";
     if (report.choice) print(*report.choice, *options.budget, report.kept, out);
     if (options.quality.epsilon > 0) line("early end") << early_end_text(report) << '\n';
     if (report.pixels_nan > 0)
@@ -143,10 +128,10 @@ void write_json(const Report& report, const std::filesystem::path& path) {
     json["device_bytes"] = report.device_bytes;
     json["frames"] = options.frames;
     if (report.choice) json["budget"] = json_of(*report.choice, *options.budget, report.kept);
-    json["time_ms"] = {{"transform", report.times.transform_ms},
-                       {"raster_insert", report.times.raster_insert_ms},
-                       {"sort_blend", report.times.sort_blend_ms},
-                       {"frame", report.times.frame_ms}};
+    json["time_ms"] = {{"transform", report.passes.transform_ms},
+                       {"raster_insert", report.passes.raster_insert_ms},
+                       {"sort_blend", report.passes.sort_blend_ms},
+                       {"frame", report.frame_ms}};
     json["psnr_db"] = nullptr;
     json["ssim"] = nullptr;
     json["max_abs_error"] = nullptr;

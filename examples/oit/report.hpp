@@ -28,7 +28,8 @@ struct Report {
     std::uint64_t device_bytes = 0;
     std::uint64_t pixels_nan = 0;
     float colour_max = 1;  ///< brightest channel of a fragment, at most
-    PassTimes times;
+    double frame_ms = 0;   ///< from clearing to the image on the device, median
+    PassTimes passes;      ///< medians
     std::optional<Comparison> comparison;
     std::optional<Choice> choice;  ///< for a budget
     KeptBudget kept;

@@ -11,10 +11,6 @@ namespace {
 constexpr std::array layer_counts{1U, 2U, 4U, 8U, 16U, 32U, 64U};
 constexpr std::array epsilons{0.1F, 0.03F, 0.01F, 0.003F};
 
-std::string_view name_of(NodeFormat format) {
-    return std::ranges::find(node_formats, format, &NodeFormatName::format)->name;
-}
-
 }  // namespace
 
 std::string method_text(const Setting& setting) {
