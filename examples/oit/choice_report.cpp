@@ -49,8 +49,7 @@ std::uint64_t median_layers(const SceneMeasure& scene) {
 std::string layers_text(const SceneMeasure& scene) {
     if (scene.fragments == 0) return "nothing transparent is to be seen";
     return std::to_string(scene.fragments) + " fragments in " +
-           percent(static_cast<double>(scene.nonempty_pixels) /
-                   static_cast<double>(scene.pixels)) +
+           percent(static_cast<double>(scene.nonempty_pixels) / static_cast<double>(scene.pixels)) +
            " of the pixels, half of these with " + std::to_string(median_layers(scene)) +
            " layers at most, the deepest with " + std::to_string(scene.longest);
 }
@@ -66,8 +65,9 @@ std::string light_text(const SceneMeasure& scene) {
 
 std::string untold_text(const SceneMeasure& scene) {
     const auto& [of_float, of_24, of_16] = scene.pixels_untold;
-    return "not told by depths of float in " + std::to_string(of_float) + " pixels, of 24 bits in " +
-           std::to_string(of_24) + ", of 16 bits in " + std::to_string(of_16);
+    return "not told by depths of float in " + std::to_string(of_float) +
+           " pixels, of 24 bits in " + std::to_string(of_24) + ", of 16 bits in " +
+           std::to_string(of_16);
 }
 
 std::string reason(const Candidate& candidate, const Budget& budget) {
@@ -88,8 +88,9 @@ std::string reason(const Candidate& candidate, const Budget& budget) {
 }
 
 const char* basis(bool bounded) {
-    return bounded ? "by its bound" : "compared with all layers in float, that picture's own "
-                                      "error included";
+    return bounded ? "by its bound"
+                   : "compared with all layers in float, that picture's own "
+                     "error included";
 }
 
 // A few of the others: what is faster and over the budget, and the next.
@@ -168,8 +169,7 @@ void print(const Choice& choice, const Budget& budget, const KeptBudget& kept, s
                         << '\n';
 }
 
-nlohmann::ordered_json json_of(const Choice& choice, const Budget& budget,
-                               const KeptBudget& kept) {
+nlohmann::ordered_json json_of(const Choice& choice, const Budget& budget, const KeptBudget& kept) {
     constexpr const char* fates[] = {"chosen", "over budget", "slower", "not needed", "failed"};
     nlohmann::ordered_json json;
     json["budget"] = budget.text();

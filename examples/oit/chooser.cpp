@@ -269,8 +269,7 @@ private:
             };
             const auto tied = std::ranges::partition(
                 contenders_, [&](const auto& contender) { return !is_out(*contender, as_fast); });
-            winner_ = std::move(
-                *std::max_element(contenders_.begin(), tied.begin(), is_worse));
+            winner_ = std::move(*std::max_element(contenders_.begin(), tied.begin(), is_worse));
             for (const auto& contender : contenders_)
                 if (contender) leave(*contender, Fate::slower);
             winner_->candidate.fate = Fate::chosen;

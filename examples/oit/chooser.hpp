@@ -26,9 +26,10 @@ struct Candidate {
     };
     Setting setting;
     Fate fate = Fate::slower;
-    std::optional<PictureError> error = {};  ///< at most, where it is known: see PictureErrors::told
-    bool bounded = false;                    ///< by theory, or else by comparing the picture
-    std::optional<double> fastest_ms = {};   ///< a frame, where it was drawn
+    std::optional<PictureError> error =
+        {};                                 ///< at most, where it is known: see PictureErrors::told
+    bool bounded = false;                   ///< by theory, or else by comparing the picture
+    std::optional<double> fastest_ms = {};  ///< a frame, where it was drawn
     std::string failure = {};
 };
 
@@ -42,7 +43,7 @@ struct Choice {
     double exact_ms = 0;    ///< of all layers in float with the method `linked`
     SceneMeasure scene;
     std::vector<Candidate> candidates;  ///< the fastest first, then those that were not drawn
-    std::uint32_t draws = 0;            ///< frames that were drawn to find it, the survey's included
+    std::uint32_t draws = 0;  ///< frames that were drawn to find it, the survey's included
     double took_ms = 0;
 };
 

@@ -44,7 +44,7 @@ private:
     std::uint32_t check_every_;
     std::uint32_t unchecked_ = 0;  ///< changed frames since the last check
     Choice choice_;
-    Frame now_;       ///< as it was drawn last
+    Frame now_;  ///< as it was drawn last
     Renderer* renderer_ = nullptr;
 };
 

@@ -84,9 +84,8 @@ void draw_with_method(oit::Report& report, oit::Renderer& renderer, oit::Frame& 
     renderer.draw();  // builds the kernels' last variants and grows the pool
     renderer.draw();
     const bool changes = report.options.until || report.options.turn_degrees != 0;
-    report.frame_ms = draw_frames(frame, report.options, [&] {
-        return changes ? renderer.draw_changed() : renderer.draw();
-    });
+    report.frame_ms = draw_frames(
+        frame, report.options, [&] { return changes ? renderer.draw_changed() : renderer.draw(); });
     report.passes = draw_passes(renderer, report.options.frames);
 }
 

@@ -44,8 +44,8 @@ void read_format(const std::string& text, Options& options) {
 
 Options parse_options(int count, const char* const* arguments) {
     Options options;
-    std::string method = options.method, layers = "all", epsilon = "0", format = "float",
-                budget, check_every = "1", until, turn = "0", out = options.out.string(), json,
+    std::string method = options.method, layers = "all", epsilon = "0", format = "float", budget,
+                check_every = "1", until, turn = "0", out = options.out.string(), json,
                 frames = "5";
     CLI::App app{"Draws a mesh or a scene with order-independent transparency.", "cellist-oit"};
     const auto add = [&](const char* name, std::string& value, const char* what, const char* type) {

@@ -17,7 +17,7 @@ struct SceneMeasure {
     struct Cut {
         std::uint32_t layers = 0;  ///< as Quality::layers; 0 where the end is by epsilon
         float epsilon = 0;
-        PictureError error;      ///< with float nodes
+        PictureError error;       ///< with float nodes
         double light_behind = 0;  ///< of Cut::layers: what passes to the layers left out, at most
     };
 

@@ -110,8 +110,8 @@ public:
           layers_(std::move(layers)),
           epsilons_(std::move(epsilons)),
           source_(device, frame_),
-          compare_(source_.screen_kernel(text(kernels::survey_compare_cl, 2, 2), "survey_compare.cl",
-                                         "oit_compare")),
+          compare_(source_.screen_kernel(text(kernels::survey_compare_cl, 2, 2),
+                                         "survey_compare.cl", "oit_compare")),
           uncertainty_(device, frame_.pixels()),
           figures_(device, groups_of(frame_) * (maxima() + sums())),
           compared_(device, groups_of(frame_) * 4) {}
@@ -219,8 +219,8 @@ const std::string& list_pass_text() {
 
 }  // namespace
 
-Survey::Survey(const cellist::Device& device, const Frame& frame,
-               std::vector<std::uint32_t> layers, std::vector<float> epsilons) {
+Survey::Survey(const cellist::Device& device, const Frame& frame, std::vector<std::uint32_t> layers,
+               std::vector<float> epsilons) {
     // The lists of one node type.
     const auto make = [&]<class Node>(const Node*) -> std::unique_ptr<Drawing> {
         class Lists : public Drawing {

@@ -14,7 +14,7 @@ const MethodRegistration linked({.name = "linked",
                                  .exact = true,
                                  .refusal = refuses_nothing,
                                  .make = make,
-     .bound = bound_of_layers});
+                                 .bound = bound_of_layers});
 
 }  // namespace
 }  // namespace oit
