@@ -15,8 +15,9 @@ namespace {
 
 using Fate = Candidate::Fate;
 
-// Packing makes no method faster by more than this, so slower methods are left out in every format.
-constexpr double family_margin = 1.6;
+// Other formats and sizes make a method faster by no more than packing does `linked`, times this. So those
+// that are slower are left out in all of them.
+constexpr double family_margin = 1.2;
 // After two draws, a setting is out if it is slower by this; with more draws, by less.
 constexpr double first_margin = 1.3;
 constexpr int rounds = 3;
@@ -152,8 +153,10 @@ private:
     }
 
     [[nodiscard]] bool is_predicted_slow(const Setting& setting) const {
+        // With fewer layers a method may be far faster than with all.
+        if (setting.quality.layers || setting.quality.epsilon > 0) return false;
         if (const auto family = family_ms_.find(setting.method->name); family != family_ms_.end())
-            return family->second > family_margin * best_ms_;
+            return family->second > family_margin * packing_gain_ * best_ms_;
         const auto passes =
             static_cast<double>(setting.method->passes(choice_.scene, setting.quality));
         return passes * part_of_pass * pass_ms_ > family_margin * best_ms_;
@@ -233,11 +236,13 @@ private:
         pass_ms_ = std::min(pass.ms(), first->ms());
     }
 
-    // What the method takes at least.
+    // What the method takes at least, and what it gains from packing.
     void note(const Contender& contender, double ms) {
-        const auto [family, is_new] =
-            family_ms_.try_emplace(contender.candidate.setting.method->name, ms);
+        const Setting& setting = contender.candidate.setting;
+        const auto [family, is_new] = family_ms_.try_emplace(setting.method->name, ms);
         family->second = std::min(family->second, ms);
+        if (setting.method->name == "linked" && setting.quality.format != NodeFormat::float32)
+            packing_gain_ = std::max(packing_gain_, choice_.exact_ms / ms);
     }
 
     // The fastest comes first.
@@ -323,7 +328,8 @@ private:
     std::unique_ptr<Contender> fallback_;                 // the most accurate of the others
     std::unique_ptr<Contender> winner_;
     double best_ms_ = std::numeric_limits<double>::infinity();
-    double pass_ms_ = 0;  // to draw and store all fragments once
+    double packing_gain_ = 1;  // of `linked`: how many times as fast it gets
+    double pass_ms_ = 0;       // to draw and store all fragments once
     std::map<std::string_view, double> family_ms_;
     std::map<std::pair<std::string_view, Series>, std::size_t> met_;
 };
