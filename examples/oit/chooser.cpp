@@ -15,8 +15,8 @@ namespace {
 
 using Fate = Candidate::Fate;
 
-// Other formats and sizes make a method faster by no more than packing does `linked`, times this. So those
-// that are slower are left out in all of them.
+// Other formats and sizes make a method faster by no more than packing does `linked`, times this.
+// So methods that are slower are left out in all of them.
 constexpr double family_margin = 1.2;
 // After two draws, a setting is out if it is slower by this; with more draws, by less.
 constexpr double first_margin = 1.3;
@@ -204,8 +204,8 @@ private:
     }
 
     // Draws by turns with the fastest so far, and says whether it is slower by this. What else the
-    // machine does disturbs both, but not always alike: it is slower where its least time and that of
-    // these turns say so.
+    // machine does disturbs both, but not always alike: it is slower where its least time and that
+    // of these turns say so.
     [[nodiscard]] bool is_slower(Contender& contender, double margin) {
         Contender* leader = contenders_.empty() ? nullptr : contenders_.front().get();
         support::Least own, other;
@@ -272,8 +272,8 @@ private:
         });
     }
 
-    // Those that are left draw by turns, so that what else the machine does disturbs all alike. Times
-    // from before do not count: they were taken at different times, and not equally often.
+    // Those that are left draw by turns, so that what else the machine does disturbs all alike.
+    // Times from before do not count: they were taken at other moments, and not equally often.
     void play_off() {
         if (contenders_.size() < 2) return;
         for (const auto& contender : contenders_) contender->least = {};
