@@ -1,5 +1,7 @@
 #include "list_method.hpp"
 
+#include "input_error.hpp"
+#include "list_slices.hpp"
 #include "oit_kernels.hpp"
 
 namespace oit {
@@ -27,25 +29,34 @@ public:
                const ListReader& reader, bool sorts)
         : source_(source),
           sorts_(sorts),
-          fragments_(source.device(), source.shape(), options),
+          slices_(slice_plan<Node>(source, options)),
+          fragments_(source.device(), source.shape(), sliced(options, slices_)),
           pass_(source.pass(kernels::lists_cl, "lists.cl", fragments_)),
           resolve_(source.screen_kernel(reader.text, reader.file_name, reader.kernel, fragments_)) {
     }
 
     void store() override {
-        fragments_.build([&] { source_.draw(pass_, fragments_); });
+        const auto insert = [&] { source_.draw(pass_, fragments_); };
+        if (slices_)
+            build_in_slices(source_, *slices_, fragments_, insert, [&] { blend(); });
+        else
+            fragments_.build(insert);
     }
 
     void resolve() override {
-        if (sorts_) fragments_.sort(&Node::key);
-        source_.run_on_screen(resolve_, fragments_);
+        if (!slices_) blend();
     }
 
-    [[nodiscard]] std::uint64_t device_bytes() const override { return fragments_.pool_bytes(); }
+    [[nodiscard]] std::uint64_t device_bytes() const override {
+        return fragments_.pool_bytes() + (slices_ ? slices_->count_bytes : 0);
+    }
+    [[nodiscard]] std::uint32_t slices() const override { return slices_ ? slices_->count : 1; }
     [[nodiscard]] std::optional<cellist::Lengths> lengths() const override {
+        if (slices_) return {};
         return fragments_.lengths();
     }
     [[nodiscard]] std::optional<StoredDepths> depths() const override {
+        if (slices_) return {};
         const cellist::HostLists<Node> lists = fragments_.download();
         StoredDepths stored{{lists.offsets().begin(), lists.offsets().end()}, {}};
         for (const Node& node : lists.records())
@@ -54,8 +65,14 @@ public:
     }
 
 private:
+    void blend() {
+        if (sorts_) fragments_.sort(&Node::key);
+        source_.run_on_screen(resolve_, fragments_);
+    }
+
     FragmentSource& source_;
     bool sorts_;
+    std::optional<Slices> slices_;  ///< where memory is bounded
     cellist::Lists<Node> fragments_;
     raster::Pass pass_;
     cellist::Kernel resolve_;

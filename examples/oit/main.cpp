@@ -134,7 +134,8 @@ void run(const oit::Options& options) {
                            .views = make_views(options),
                            .time = options.time,
                            .quality = options.quality,
-                           .blend_function = options.blend_function};
+                           .blend_function = options.blend_function,
+                           .memory_bytes = options.memory_bytes};
     oit::Renderer renderer(device, frame, oit::method_named(options.method));
 
     oit::Report report;
@@ -155,6 +156,7 @@ void run(const oit::Options& options) {
                        options.width * static_cast<int>(frame.views.size()), options.height);
 
     report.lengths = renderer.method().lengths();
+    report.slices = renderer.method().slices();
     report.method_bytes = renderer.method().device_bytes();
     report.device_bytes = renderer.device_bytes();
     if (options.reference) report.comparison = compare_with_reference(frame, renderer, image);

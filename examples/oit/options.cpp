@@ -105,6 +105,29 @@ void read_depth_scale(const std::string& text, Options& options) {
     options.quality.depth_scale = text == "linear" ? DepthScale::linear : DepthScale::reversed;
 }
 
+void read_reduce(const std::string& text, Options& options) {
+    const auto reduce = parse<int>(text);
+    if (!reduce || (*reduce != 1 && *reduce != 2 && *reduce != 4))
+        refuse("--reduce", text, "1, 2 or 4");
+    options.quality.reduce = *reduce;
+}
+
+// A number of bytes, or of a unit of them.
+void read_memory(const std::string& text, Options& options) {
+    if (text.empty()) return;
+    constexpr std::pair<std::string_view, int> units[] = {
+        {"KiB", 10}, {"MiB", 20}, {"GiB", 30}, {"", 0}};
+    for (const auto& [name, shift] : units) {
+        if (!std::string_view(text).ends_with(name)) continue;
+        const auto number =
+            parse<std::uint64_t>(std::string_view(text).substr(0, text.size() - name.size()));
+        if (!number || *number == 0 || *number > ~std::uint64_t{0} >> shift) break;
+        options.memory_bytes = *number << shift;
+        return;
+    }
+    refuse("--memory", text, "a whole number of bytes, KiB, MiB or GiB, such as 64MiB");
+}
+
 // A kind of blending, or a file with a function.
 void read_blend(const std::string& text, Options& options) {
     constexpr std::pair<std::string_view, Blend> kinds[] = {
@@ -147,7 +170,8 @@ Options parse_options(int count, const char* const* arguments) {
     Options options;
     std::string size = "1280x720", alpha = "0.35", layers = "all", view = "25,8", samples = "1",
                 resolve = "pixel", format = "float", depth_scale = "linear", epsilon = "0", eyes,
-                time = "0", blend, out = options.out.string(), json, frames = "5";
+                time = "0", blend, reduce = "1", memory, out = options.out.string(), json,
+                frames = "5";
     CLI::App app{"Draws a mesh or a scene with order-independent transparency.", "cellist-oit"};
     const auto add = [&](const char* name, std::string& value, const char* what, const char* type) {
         CLI::Option* option = app.add_option(name, value, what)->type_name(type);
@@ -171,6 +195,11 @@ Options parse_options(int count, const char* const* arguments) {
     add("--format", format, "colour and depth of fragments", "F");
     add("--depth-scale", depth_scale, "what 16 and 24 bits of depth divide: linear or reversed",
         "S");
+    add("--reduce", reduce,
+        "draw transparent surfaces with 2 or 4 times fewer pixels a side, and enlarge them", "N");
+    add("--memory", memory,
+        "what the method may take on the device, such as 64MiB; lists are drawn in slices",
+        "BYTES");
     add("--view", view, "direction to look from, in degrees", "AZIMUTH,ELEVATION");
     add("--stereo", eyes, "two eyes, this far apart; the scene has radius 1", "DISTANCE");
     add("--time", time, "of an animated scene, in seconds", "T");
@@ -202,6 +231,8 @@ Options parse_options(int count, const char* const* arguments) {
     read_resolve(resolve, options);
     read_format(format, options);
     read_depth_scale(depth_scale, options);
+    read_reduce(reduce, options);
+    read_memory(memory, options);
     read_view(view, options);
     if (!eyes.empty())
         options.eye_separation = read_between("--stereo", eyes, 0, 1, "a distance from 0 to 1");
@@ -210,6 +241,8 @@ Options parse_options(int count, const char* const* arguments) {
         static_cast<std::uint32_t>(support::read_number("--frames", frames, 1, 1'000'000));
     if (options.quality.depth_range && options.quality.samples == 1)
         throw InputError("--depth-range needs several samples: add --samples 2, 4 or 8");
+    if (options.quality.reduce > 1 && options.quality.samples > 1)
+        throw InputError("--reduce draws one sample a pixel: leave out --samples");
     (void)method_named(options.method);
     return options;
 }

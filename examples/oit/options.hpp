@@ -22,6 +22,7 @@ struct Options {
     double time = 0;                            ///< of the scene, in seconds
     bool opaque_floor = false;
     Quality quality = {};
+    std::optional<std::uint64_t> memory_bytes = {};  ///< that the method may take
     std::optional<Blend> blend = {};  ///< of all transparent surfaces; else the scene decides
     std::optional<BlendFunction> blend_function = {};
     bool reference = false;

@@ -8,6 +8,7 @@
 
 #include "fragment_source.hpp"
 #include "method.hpp"
+#include "reduction.hpp"
 
 namespace oit {
 
@@ -28,23 +29,28 @@ public:
     Renderer(const cellist::Device& device, const Frame& frame,
              const MethodInfo& method = method_named("linked"));
 
-    /// Draws once, and blocks until the image is there.
+    /// Draws once, and blocks until the image is there. Throws InputError where the method needs more than
+    /// Frame::memory_bytes.
     PassTimes draw();
     /// The same at another time of the scene, in seconds.
     PassTimes draw_at(double time);
 
     /// The linear image, eye by eye, row by row from the top.
-    [[nodiscard]] std::vector<cl_float4> image() const { return source_.image().download(); }
+    [[nodiscard]] std::vector<cl_float4> image() const {
+        return (reduction_ ? reduction_->image() : source_.image()).download();
+    }
     [[nodiscard]] const Method& method() const { return *method_; }
     [[nodiscard]] const Needs& needs() const { return source_.needs(); }
     [[nodiscard]] const NodeLayout& layout() const { return source_.layout(); }
     /// Everything that the renderer holds on the device.
     [[nodiscard]] std::uint64_t device_bytes() const {
-        return source_.device_bytes() + method_->device_bytes();
+        return source_.device_bytes() + method_->device_bytes() +
+               (reduction_ ? reduction_->device_bytes() : 0);
     }
 
 private:
     const cellist::Device& device_;
+    std::unique_ptr<Reduction> reduction_;  ///< where Quality::reduce asks for it
     FragmentSource source_;
     std::unique_ptr<Method> method_;
 };
