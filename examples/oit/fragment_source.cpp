@@ -59,7 +59,7 @@ OitFrame constants_of(const Frame& frame, const Needs& needs) {
             .colour_max = needs.colour_max,
             .epsilon = frame.quality.epsilon,
             .first_pixel = 0,
-            .end_pixel = 0};
+            .end_pixel = static_cast<cl_uint>(frame.pixels())};
 }
 
 cellist::Range screen_of(const Frame& frame, std::size_t samples_across) {
