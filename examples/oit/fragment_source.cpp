@@ -161,6 +161,11 @@ void FragmentSource::finish() {
                       static_cast<cl_uint>(image_.size()));
 }
 
+bool FragmentSource::complete() {
+    const bool opaque = !opaque_ || !opaque_->passes || opaque_->passes->triangles.complete();
+    return transparent_.complete() && opaque;
+}
+
 cellist::Shape FragmentSource::shape() const {
     return {static_cast<std::uint64_t>(frame_.width()), static_cast<std::uint64_t>(frame_.height()),
             frame_.views.size()};

@@ -32,9 +32,13 @@ public:
     /// Projects the vertices. Does not block.
     void transform();
 
-    /// Sorts large triangles into tiles and draws the opaque surfaces. Blocks. With Quality::reduce, the
-    /// opaque depths are the caller's to write.
+    /// Divides large triangles into blocks and draws the opaque surfaces. Does not block. With
+    /// Quality::reduce, the opaque depths are the caller's to write.
     void prepare();
+
+    /// Whether everything was drawn since prepare(). If not, there is room for it now, and the frame
+    /// begins again there. Blocks.
+    [[nodiscard]] bool complete();
 
     /// From now on, kernels over the pixels blend those of the slice alone: see Frame::memory_bytes.
     void set_slice(const cellist::Slice& slice);

@@ -1,6 +1,7 @@
 #include "list_method.hpp"
 
-#include "input_error.hpp"
+#include <bit>
+
 #include "list_slices.hpp"
 #include "oit_kernels.hpp"
 
@@ -11,53 +12,87 @@ namespace {
 // sorting the lists is faster.
 constexpr std::uint32_t nearest_max = 16;
 
+// Longest lists that a work-item sorts on its way through them; longer ones are sorted before.
+constexpr std::uint32_t sorted_on_the_way_max = 63;
+
 bool picks_nearest(const Quality& quality) {
     return quality.layers && *quality.layers <= nearest_max;
 }
 
-ListReader blending_reader(const Quality& quality) {
-    const std::string nearest =
-        picks_nearest(quality) ? "#define OIT_NEAREST " + std::to_string(*quality.layers) + "\n"
-                               : std::string();
-    return {nearest + std::string(kernels::lists_cl), "lists.cl", "oit_resolve_lists"};
+ListReader blending_reader(const std::string& define) {
+    return {define + std::string(kernels::lists_cl), "lists.cl", "oit_resolve_lists"};
 }
 
+ListReader nearest_reader(std::uint32_t nearest) {
+    return blending_reader("#define OIT_NEAREST " + std::to_string(nearest) + "\n");
+}
+
+bool needs_sorting(const Quality& quality, const std::optional<ListReader>& reader) {
+    return reader || !picks_nearest(quality);
+}
+
+ListReader reader_of(const Quality& quality, const std::optional<ListReader>& reader) {
+    if (reader) return *reader;
+    return needs_sorting(quality, reader) ? blending_reader({}) : nearest_reader(*quality.layers);
+}
+
+// The device is waited for where the length of the lists is not known: in the first frame, and in others that
+// have more fragments than fit. All further ones are enqueued at once, into a pool with room for
+// somewhat more fragments than the first had.
 template <class Node>
 class ListMethod : public Method {
 public:
     ListMethod(FragmentSource& source, const cellist::ListsOptions& options,
-               const ListReader& reader, bool sorts)
+               const std::optional<ListReader>& reader)
         : source_(source),
-          sorts_(sorts),
-          slices_(slice_plan<Node>(source, options)),
-          fragments_(source.device(), source.shape(), sliced(options, slices_)),
-          pass_(source.pass(kernels::lists_cl, "lists.cl", fragments_)),
-          resolve_(source.screen_kernel(reader.text, reader.file_name, reader.kernel, fragments_)) {
+          options_(options),
+          fragments_(std::in_place, source.device(), source.shape(), options),
+          pass_(source.pass(kernels::lists_cl, "lists.cl", *fragments_)),
+          longer_(source.device(), 1) {
+        const Quality& quality = source.frame().quality;
+        sorts_ = needs_sorting(quality, reader);
+        may_sort_on_the_way_ = !reader && sorts_;
+        reader_.emplace(kernel_of(reader_of(quality, reader)));
     }
 
     void store() override {
-        const auto insert = [&] { source_.draw(pass_, fragments_); };
-        if (slices_)
-            build_in_slices(source_, *slices_, fragments_, insert, [&] { blend(); });
+        if (known_ && !settled_) settle();
+        const auto draw = [this] { source_.draw(pass_, *fragments_); };
+        if (settled_)
+            built_ = fragments_->build_async(draw);
         else
-            fragments_.build(insert);
+            fragments_->build(draw);
     }
 
     void resolve() override {
-        if (!slices_) blend();
+        if (settled_ && sorter_) {
+            longer_.fill(0);
+            source_.run_on_screen(*sorter_, *fragments_, longer_);
+            longer_read_ = longer_.download_async();
+            return;
+        }
+        if (sorts_) fragments_->sort(&Node::key);
+        source_.run_on_screen(*reader_, *fragments_);
     }
 
-    [[nodiscard]] std::uint64_t device_bytes() const override {
-        return fragments_.pool_bytes() + (slices_ ? slices_->count_bytes : 0);
+    [[nodiscard]] bool complete() override {
+        if (!settled_) {
+            if (!known_ && options_.overflow == cellist::Overflow::grow)
+                known_ = fragments_->lengths();
+            return true;
+        }
+        const bool fitted = built_.get().dropped == 0;
+        if (fitted && !(sorter_ && longer_read_.get().front() != 0)) return true;
+        unsettle();
+        return false;
     }
-    [[nodiscard]] std::uint32_t slices() const override { return slices_ ? slices_->count : 1; }
+
+    [[nodiscard]] std::uint64_t device_bytes() const override { return fragments_->pool_bytes(); }
     [[nodiscard]] std::optional<cellist::Lengths> lengths() const override {
-        if (slices_) return {};
-        return fragments_.lengths();
+        return fragments_->lengths();
     }
     [[nodiscard]] std::optional<StoredDepths> depths() const override {
-        if (slices_) return {};
-        const cellist::HostLists<Node> lists = fragments_.download();
+        const cellist::HostLists<Node> lists = fragments_->download();
         StoredDepths stored{{lists.offsets().begin(), lists.offsets().end()}, {}};
         for (const Node& node : lists.records())
             stored.depths.push_back(source_.layout().depth_of(node.key, source_.needs()));
@@ -65,17 +100,48 @@ public:
     }
 
 private:
-    void blend() {
-        if (sorts_) fragments_.sort(&Node::key);
-        source_.run_on_screen(resolve_, fragments_);
+    // Makes a pool for as many fragments as there were, and a quarter more.
+    void settle() {
+        const auto more = [](std::uint64_t n) { return n + n / 4 + 1; };
+        cellist::ListsOptions options = options_;
+        options.overflow = cellist::Overflow::drop;
+        if (options.storage == cellist::Storage::fixed)
+            options.slots = static_cast<std::uint32_t>(more(known_->longest));
+        else
+            options.capacity_nodes = more(known_->total);
+        const std::uint64_t longest = more(known_->longest);
+        if (may_sort_on_the_way_ && longest <= sorted_on_the_way_max)
+            sorter_.emplace(kernel_of(blending_reader(
+                "#define OIT_SORTED " + std::to_string(std::bit_ceil(longest + 1)) + "\n")));
+        else
+            sorter_.reset();
+        fragments_.emplace(source_.device(), source_.shape(), options);
+        settled_ = true;
+    }
+
+    void unsettle() {
+        known_.reset();
+        settled_ = false;
+        fragments_.emplace(source_.device(), source_.shape(), options_);
+    }
+
+    [[nodiscard]] cellist::Kernel kernel_of(const ListReader& reader) const {
+        return source_.screen_kernel(reader.text, reader.file_name, reader.kernel, *fragments_);
     }
 
     FragmentSource& source_;
-    bool sorts_;
-    std::optional<Slices> slices_;  ///< where memory is bounded
-    cellist::Lists<Node> fragments_;
+    cellist::ListsOptions options_;
+    std::optional<cellist::Lists<Node>> fragments_;
     raster::Pass pass_;
-    cellist::Kernel resolve_;
+    bool sorts_ = false;
+    bool may_sort_on_the_way_ = false;
+    std::optional<cellist::Kernel> reader_;
+    std::optional<cellist::Kernel> sorter_;  // reads lists that are not sorted
+    cellist::Buffer<cl_uint> longer_;        // not 0 where it met a list that is too long
+    std::optional<cellist::Lengths> known_;
+    bool settled_ = false;
+    cellist::Pending<cellist::BuildReport> built_;
+    cellist::Pending<std::vector<cl_uint>> longer_read_;
 };
 
 }  // namespace
@@ -84,12 +150,13 @@ std::unique_ptr<Method> make_list_method(FragmentSource& source,
                                          const cellist::ListsOptions& options,
                                          std::optional<ListReader> reader) {
     const Quality& quality = source.frame().quality;
-    const bool sorts = reader || !picks_nearest(quality);
-    if (!reader) reader = blending_reader(quality);
-    return with_node_type(
-        source.layout().words, [&]<class Node>(const Node*) -> std::unique_ptr<Method> {
-            return std::make_unique<ListMethod<Node>>(source, options, *reader, sorts);
-        });
+    if (source.frame().memory_bytes && options.overflow == cellist::Overflow::grow)
+        return make_list_slices(source, options, reader_of(quality, reader),
+                                needs_sorting(quality, reader));
+    return with_node_type(source.layout().words,
+                          [&]<class Node>(const Node*) -> std::unique_ptr<Method> {
+                              return std::make_unique<ListMethod<Node>>(source, options, reader);
+                          });
 }
 
 }  // namespace oit

@@ -80,7 +80,9 @@ Reduction::Reduction(const cellist::Device& device, const Frame& frame)
       enlarge_(device, kernel_source(source_, frame.quality.reduce), "oit_enlarge") {}
 
 void Reduction::prepare(const FragmentSource& transparent) {
-    source_.prepare();
+    // The reduced frame begins with what is drawn here, so nothing may be missing.
+    do source_.prepare();
+    while (!source_.complete());
     source_.run_on_screen(backdrop_);
     if (const cellist::Buffer<cl_uint>* depths = source_.depth_bits())
         shrink_.run(pixels_of(reduced_), *depths, *transparent.depth_bits(),

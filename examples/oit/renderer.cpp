@@ -34,31 +34,62 @@ Renderer::Renderer(const cellist::Device& device, const Frame& frame, const Meth
       source_(device, reduction_ ? reduction_->reduced() : frame),
       method_(make_method(source_, method)) {}
 
-PassTimes Renderer::draw() {
-    device_.finish();
-    const support::Stopwatch stopwatch;
+void Renderer::transform() {
     if (reduction_) reduction_->transform();
     source_.transform();
-    device_.finish();
-    const double transformed = stopwatch.ms();
+}
+
+void Renderer::store() {
     if (reduction_) reduction_->prepare(source_);
     source_.prepare();
     method_->store();
     check_memory(*method_, source_.frame().memory_bytes);
-    device_.finish();
-    const double stored = stopwatch.ms();
+}
+
+void Renderer::resolve() {
     method_->resolve();
     source_.finish();
     if (reduction_) reduction_->finish(source_);
-    device_.finish();
-    const double end = stopwatch.ms();
-    return {transformed, stored - transformed, end - stored, end};
 }
 
-PassTimes Renderer::draw_at(double time) {
+bool Renderer::complete() {
+    const bool drawn = source_.complete();
+    return method_->complete() && drawn;
+}
+
+double Renderer::draw() {
+    device_.finish();
+    const support::Stopwatch stopwatch;
+    transform();
+    do {
+        store();
+        resolve();
+    } while (!complete());
+    device_.finish();
+    return stopwatch.ms();
+}
+
+double Renderer::draw_at(double time) {
     if (reduction_) reduction_->move_to(time);
     source_.move_to(time);
     return draw();
+}
+
+PassTimes Renderer::draw_by_pass() {
+    PassTimes times;
+    const auto measure = [&](double PassTimes::*pass, auto enqueue) {
+        device_.finish();
+        const support::Stopwatch stopwatch;
+        enqueue();
+        device_.finish();
+        times.*pass = stopwatch.ms();
+    };
+    measure(&PassTimes::transform_ms, [&] { transform(); });
+    do {
+        measure(&PassTimes::raster_insert_ms, [&] { store(); });
+        measure(&PassTimes::sort_blend_ms, [&] { resolve(); });
+    } while (!complete());
+    return times;
 }
 
 }  // namespace oit

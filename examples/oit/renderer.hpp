@@ -12,12 +12,11 @@
 
 namespace oit {
 
-/// Milliseconds of the passes of a frame.
+/// Milliseconds of the passes of a frame, each alone on the device.
 struct PassTimes {
     double transform_ms = 0;
     double raster_insert_ms = 0;  ///< binning, the opaque passes, shading and storing
     double sort_blend_ms = 0;
-    double frame_ms = 0;  ///< from clearing to the blended image on the device
 };
 
 /// Draws a frame on a device with one of the methods.
@@ -29,11 +28,13 @@ public:
     Renderer(const cellist::Device& device, const Frame& frame,
              const MethodInfo& method = method_named("linked"));
 
-    /// Draws once, and blocks until the image is there. Throws InputError where the method needs more than
-    /// Frame::memory_bytes.
-    PassTimes draw();
+    /// Draws once, and blocks until the image is there: milliseconds from clearing to the image. Throws
+    /// InputError where the method needs more than Frame::memory_bytes.
+    double draw();
     /// The same at another time of the scene, in seconds.
-    PassTimes draw_at(double time);
+    double draw_at(double time);
+    /// The same with a wait behind each pass, so that a frame takes longer.
+    PassTimes draw_by_pass();
 
     /// The linear image, eye by eye, row by row from the top.
     [[nodiscard]] std::vector<cl_float4> image() const {
@@ -49,6 +50,11 @@ public:
     }
 
 private:
+    void transform();
+    void store();
+    void resolve();
+    [[nodiscard]] bool complete();
+
     const cellist::Device& device_;
     std::unique_ptr<Reduction> reduction_;  ///< where Quality::reduce asks for it
     FragmentSource source_;

@@ -97,11 +97,10 @@ void print(const Report& report, std::ostream& out) {
     if (options.memory_bytes)
         line("slices") << report.slices << ", " << grouped(report.method_bytes) << " of "
                        << grouped(*options.memory_bytes) << " bytes used\n";
-    line("transform") << fixed(report.times.transform_ms, 2) << " ms\n";
-    line("raster + insert") << fixed(report.times.raster_insert_ms, 2) << " ms\n";
-    line("sort + blend") << fixed(report.times.sort_blend_ms, 2) << " ms\n";
-    line("frame") << fixed(report.times.frame_ms, 2) << " ms (median of " << options.frames
-                  << ")\n";
+    line("transform") << fixed(report.passes.transform_ms, 2) << " ms\n";
+    line("raster + insert") << fixed(report.passes.raster_insert_ms, 2) << " ms\n";
+    line("sort + blend") << fixed(report.passes.sort_blend_ms, 2) << " ms\n";
+    line("frame") << fixed(report.frame_ms, 2) << " ms (median of " << options.frames << ")\n";
     if (options.quality.epsilon > 0) line("early end") << early_end_text(report) << '\n';
     if (report.pixels_nan > 0)
         line("NaN") << grouped(report.pixels_nan) << " pixels, drawn black\n";
@@ -149,10 +148,10 @@ void write_json(const Report& report, const std::filesystem::path& path) {
     json["pixels_nan"] = report.pixels_nan;
     json["device_bytes"] = report.device_bytes;
     json["frames"] = options.frames;
-    json["time_ms"] = {{"transform", report.times.transform_ms},
-                       {"raster_insert", report.times.raster_insert_ms},
-                       {"sort_blend", report.times.sort_blend_ms},
-                       {"frame", report.times.frame_ms}};
+    json["time_ms"] = {{"transform", report.passes.transform_ms},
+                       {"raster_insert", report.passes.raster_insert_ms},
+                       {"sort_blend", report.passes.sort_blend_ms},
+                       {"frame", report.frame_ms}};
     json["psnr_db"] = nullptr;
     json["max_abs_error"] = nullptr;
     if (report.comparison) {

@@ -28,7 +28,8 @@ struct Report {
     std::uint32_t slices = 1;  ///< that the frame was built in
     std::uint64_t pixels_nan = 0;
     float colour_max = 1;  ///< brightest channel of a fragment, at most
-    PassTimes times;
+    double frame_ms = 0;   ///< from clearing to the image on the device, median
+    PassTimes passes;      ///< medians
     std::optional<Comparison> comparison;
 };
 

@@ -95,7 +95,8 @@ typedef struct cellist_shard {
     CELLIST_UINT open_reservations;  // that hold nodes which no link has taken
     CELLIST_UINT missing_low;        // nodes that reservations lack, 64 bits in two words
     CELLIST_UINT missing_high;
-    CELLIST_UINT padding[5];
+    CELLIST_UINT passed;  // when this shard was full, so many were seen full from it on
+    CELLIST_UINT padding[4];
 } cellist_shard;
 
 // What a choice among the records of each cell finds, from 0.

@@ -26,9 +26,6 @@
 // largest image. Differences of snapped coordinates then take 25 bits, edge functions 51.
 #define RASTER_GUARD 4194304.0f
 
-// Side of a screen tile in pixels, a power of two.
-#define RASTER_TILE_PIXELS 32
-
 #define RASTER_PLANES 5
 #define RASTER_POLYGON_MAX 8
 #define RASTER_PIECES_MAX 6

@@ -13,8 +13,24 @@
 namespace raster {
 namespace {
 
-constexpr int tile_pixels = RASTER_TILE_PIXELS;
-constexpr std::size_t batch_size = 64;  // RASTER_BATCH in triangle.clh
+constexpr std::size_t batch_size = 64;         // RASTER_BATCH in triangle.clh
+constexpr std::size_t first_capacity = 16384;  // of the queues
+
+// What suits a device. On GPUs a work-item scans no more than tiny triangles alone, and the blocks of others
+// are shared by a work-item for each pixel; on CPUs a work-item is a loop of a thread, and what it
+// saves is the setup of triangles.
+struct Tuning {
+    int small_pixels;
+    int block_pixels;
+    std::size_t lanes;   // of a block
+    std::size_t teams;   // of lanes, in a work-group
+    std::size_t groups;  // for each compute unit
+};
+
+Tuning tuning_for(const cellist::Device& device) {
+    if (device.info().type == CL_DEVICE_TYPE_GPU) return {4, 4, 16, 4, 32};
+    return {32, 32, 1, 1, 64};
+}
 
 cl_uint checked_count(std::uint64_t count, const char* what) {
     constexpr std::uint64_t limit = 0xFFFFFFFF / 3;
@@ -64,13 +80,18 @@ std::string joined(std::initializer_list<std::string_view> parts) {
     return text;
 }
 
-std::string defines(const Sampling& sampling) {
-    return "#define RASTER_SAMPLES " + std::to_string(sampling.samples) + "\n" +
+std::string defines(const cellist::Device& device, const Sampling& sampling) {
+    const Tuning tuning = tuning_for(device);
+    return "#define RASTER_SMALL_PIXELS " + std::to_string(tuning.small_pixels) +
+           "\n#define RASTER_BLOCK_PIXELS " + std::to_string(tuning.block_pixels) +
+           "\n#define RASTER_LANES " + std::to_string(tuning.lanes) + "\n#define RASTER_TEAMS " +
+           std::to_string(tuning.teams) + "\n#define RASTER_SAMPLES " +
+           std::to_string(sampling.samples) + "\n" +
            (sampling.depth_range ? "#define RASTER_DEPTH_RANGE\n" : "");
 }
 
 cellist::Source setup_source(const cellist::Device& device, const Sampling& sampling) {
-    return {.text = joined({defines(sampling), "#define RASTER_WIDE", kernels::geometry_h,
+    return {.text = joined({defines(device, sampling), "#define RASTER_WIDE", kernels::geometry_h,
                             kernels::samples_h, kernels::transform_cl, kernels::triangle_clh,
                             kernels::scan_clh, kernels::bin_cl}),
             .file_name = "raster_setup.cl",
@@ -96,8 +117,12 @@ cellist::Range batches_range(std::size_t batches) {
     return cellist::Range::padded(batches * batch_size, batch_size);
 }
 
-std::uint64_t tiles(cl_int side) {
-    return static_cast<std::uint64_t>((side + tile_pixels - 1) / tile_pixels);
+cellist::Range block_groups(const cellist::Device& device) {
+    const Tuning tuning = tuning_for(device);
+    const std::size_t items = tuning.teams * tuning.lanes;
+    cellist::Range range(device.info().compute_units * tuning.groups * items);
+    range.local = {items, 1, 1};
+    return range;
 }
 
 }  // namespace
@@ -149,19 +174,21 @@ std::string build_options(const cellist::Device& device) {
 SetupKernels::SetupKernels(const cellist::Device& device, const Sampling& sampling)
     : transform(device, setup_source(device, sampling), "raster_transform", cellist::type<View>,
                 cellist::type<RasterInstance>, cellist::type<RasterBatch>,
-                cellist::type<RasterVertex>, cellist::type<RasterBinned>),
+                cellist::type<RasterVertex>, cellist::type<RasterTriangle>,
+                cellist::type<RasterBlock>, cellist::type<RasterCounts>),
       bin(device, setup_source(device, sampling), "raster_bin", cellist::type<View>,
           cellist::type<RasterInstance>, cellist::type<RasterBatch>, cellist::type<RasterVertex>,
-          cellist::type<RasterBinned>) {}
+          cellist::type<RasterTriangle>, cellist::type<RasterBlock>, cellist::type<RasterCounts>) {}
 
 cellist::Source Pass::pass_source(const cellist::Device& device, const Sampling& sampling,
                                   std::string_view source, const std::string& name,
                                   const std::string& integer) {
-    return {.text = joined({defines(sampling), integer == "long" ? "#define RASTER_WIDE" : "",
-                            kernels::geometry_h, kernels::samples_h, kernels::triangle_clh,
-                            kernels::scan_clh, source, kernels::draw_clh}),
-            .file_name = name,
-            .options = build_options(device)};
+    return {
+        .text = joined({defines(device, sampling), integer == "long" ? "#define RASTER_WIDE" : "",
+                        kernels::geometry_h, kernels::samples_h, kernels::triangle_clh,
+                        kernels::scan_clh, source, kernels::draw_clh}),
+        .file_name = name,
+        .options = build_options(device)};
 }
 
 // ---- Projection ------------------------------------------------------------------------------
@@ -243,31 +270,40 @@ std::vector<RasterBatch> Projection::triangle_batches(std::span<const std::size_
 
 Triangles::Triangles(const cellist::Device& device, const Projection& projection,
                      std::span<const std::size_t> chosen)
-    : projection_(projection),
+    : device_(device),
+      projection_(projection),
+      groups_(block_groups(device)),
       batches_(device, projection.triangle_batches(chosen)),
-      bins_(device, {tiles(projection.width_), tiles(projection.height_), projection.eyes_}) {}
+      queue_(device, first_capacity),
+      blocks_(device, first_capacity),
+      counts_(device, 1) {}
 
 void Triangles::bin() {
     const Projection& p = projection_;
-    const cellist::BuildReport report =
-        bins_.build(p.kernels_.bin, triangles(), p.views_, p.instances_, p.vertices_,
-                    p.geometry_.positions(), p.geometry_.indices(), batches_);
-    has_bins_ = report.stored > 0;
+    counts_.fill({0, 0});
+    p.kernels_.bin.run(triangles(), counts_, queue_, capacity_of(queue_), blocks_,
+                       capacity_of(blocks_), p.views_, p.instances_, p.vertices_,
+                       p.geometry_.positions(), p.geometry_.indices(), batches_);
+    counted_ = counts_.download_async();
+    complete_.reset();
+}
+
+bool Triangles::complete() {
+    if (complete_) return *complete_;
+    const RasterCounts counts = counted_.get().front();
+    complete_ = counts.triangles <= queue_.size() && counts.blocks <= blocks_.size();
+    if (counts.triangles > queue_.size())
+        queue_ = cellist::Buffer<RasterTriangle>(device_, counts.triangles);
+    if (counts.blocks > blocks_.size())
+        blocks_ = cellist::Buffer<RasterBlock>(device_, counts.blocks);
+    return *complete_;
 }
 
 cellist::Range Triangles::triangles() const { return batches_range(batches_.size()); }
 
-cellist::Range Triangles::tile_rows() const {
-    const auto extent = [&](std::size_t i) {
-        return static_cast<std::size_t>(bins_.shape().extent(i));
-    };
-    cellist::Range range(extent(0), extent(1) * tile_pixels, extent(2));
-    range.local = {1, tile_pixels, 1};
-    return range;
-}
-
 std::uint64_t Triangles::device_bytes() const {
-    return batches_.size() * sizeof(RasterBatch) + bins_.pool_bytes();
+    return batches_.size() * sizeof(RasterBatch) + queue_.size() * sizeof(RasterTriangle) +
+           blocks_.size() * sizeof(RasterBlock) + counts_.size() * sizeof(RasterCounts);
 }
 
 }  // namespace raster

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -80,10 +81,12 @@ public:
          const std::string& name, const Uses&... uses)
         : small_(device, pass_source(device, sampling, source, name, "int"), "raster_draw_small",
                  cellist::type<View>, cellist::type<RasterInstance>, cellist::type<RasterBatch>,
-                 cellist::type<RasterVertex>, cellist::type<RasterBinned>, uses...),
-          tiles_(device, pass_source(device, sampling, source, name, "long"), "raster_draw_tiles",
-                 cellist::type<View>, cellist::type<RasterInstance>, cellist::type<RasterBatch>,
-                 cellist::type<RasterVertex>, cellist::type<RasterBinned>, uses...) {}
+                 cellist::type<RasterVertex>, cellist::type<RasterTriangle>,
+                 cellist::type<RasterBlock>, cellist::type<RasterCounts>, uses...),
+          blocks_(device, pass_source(device, sampling, source, name, "long"), "raster_draw_blocks",
+                  cellist::type<View>, cellist::type<RasterInstance>, cellist::type<RasterBatch>,
+                  cellist::type<RasterVertex>, cellist::type<RasterTriangle>,
+                  cellist::type<RasterBlock>, cellist::type<RasterCounts>, uses...) {}
 
 private:
     friend class Triangles;
@@ -91,7 +94,7 @@ private:
                                        std::string_view source, const std::string& name,
                                        const std::string& integer);
     cellist::Kernel small_;
-    cellist::Kernel tiles_;
+    cellist::Kernel blocks_;
 };
 
 /// Instances of meshes, projected into one or more views of the same size: a view an eye.
@@ -127,8 +130,8 @@ private:
     cellist::Buffer<RasterVertex> vertices_;
 };
 
-/// The triangles of some of the instances: sorts the large ones into screen tiles, and draws all any
-/// number of times.
+/// The triangles of some of the instances: divides the large ones into blocks of pixels, and draws all
+/// any number of times.
 class Triangles {
 public:
     /// `chosen` are indices of the projection's instances. Refers to the projection, which must
@@ -136,32 +139,45 @@ public:
     Triangles(const cellist::Device& device, const Projection& projection,
               std::span<const std::size_t> chosen);
 
-    /// Fills the tiles. Blocks until they are filled.
+    /// Puts the large triangles and their blocks into queues. Does not block.
     void bin();
+
+    /// Whether the queues had room for all. If not, they have more now, and whoever has drawn since
+    /// bin() begins again there. Blocks.
+    [[nodiscard]] bool complete();
 
     /// Draws with a pass whose RASTER_TARGET takes `targets`. Does not block.
     template <class... Targets>
     void draw(Pass& pass, const Targets&... targets) {
         const Projection& p = projection_;
         const auto run = [&](cellist::Kernel& kernel, const cellist::Range& range,
-                             const auto&... bins) {
-            kernel.run(range, targets..., bins..., p.views_, p.instances_, p.vertices_,
+                             const auto&... queue) {
+            kernel.run(range, targets..., queue..., p.views_, p.instances_, p.vertices_,
                        p.geometry_.positions(), p.geometry_.indices(), batches_);
         };
         run(pass.small_, triangles());
-        if (has_bins_) run(pass.tiles_, tile_rows(), bins_);
+        run(pass.blocks_, groups_, counts_, queue_, capacity_of(queue_), blocks_,
+            capacity_of(blocks_));
     }
 
     [[nodiscard]] std::uint64_t device_bytes() const;
 
 private:
     [[nodiscard]] cellist::Range triangles() const;
-    [[nodiscard]] cellist::Range tile_rows() const;
+    template <class T>
+    [[nodiscard]] static cl_uint capacity_of(const cellist::Buffer<T>& queue) {
+        return static_cast<cl_uint>(queue.size());
+    }
 
+    const cellist::Device& device_;
     const Projection& projection_;
+    cellist::Range groups_;
     cellist::Buffer<RasterBatch> batches_;
-    cellist::Lists<RasterBinned> bins_;
-    bool has_bins_ = false;
+    cellist::Buffer<RasterTriangle> queue_;
+    cellist::Buffer<RasterBlock> blocks_;
+    cellist::Buffer<RasterCounts> counts_;
+    cellist::Pending<std::vector<RasterCounts>> counted_;
+    std::optional<bool> complete_;  ///< since bin(), once it is known
 };
 
 }  // namespace raster

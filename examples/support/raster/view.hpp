@@ -62,12 +62,35 @@ struct RasterVertex {
 };
 CELLIST_STRUCT(RasterVertex, x, y, w, outside);
 
-/// A piece of a large or clipped triangle in a tile's list.
-struct RasterBinned {
-    cl_uint triangle;
-    cl_uint piece;
+/// A triangle on the screen, or a piece of a clipped one, ready to be scanned: oriented so that its edge
+/// functions are positive inside.
+struct RasterTriangle {
+    cl_int x[3], y[3];  ///< corners in sub-pixels
+    cl_float inverse_w[3];
+    cl_uint corner[3];  ///< vertices of the triangle in the meshes
+    cl_float share[9];  ///< parts of these in each corner, three a corner; used where clipped
+    cl_uint instance;
+    cl_uint number;  ///< of the piece among those of all triangles that are drawn
+    cl_int front;    ///< 1 where the corners run counter-clockwise on the screen
+    cl_int clipped;
+    cl_int x_begin, x_end, y_begin, y_end;  ///< pixels of which some part may be covered
 };
-CELLIST_STRUCT(RasterBinned, triangle, piece);
+CELLIST_STRUCT(RasterTriangle, x, y, inverse_w, corner, share, instance, number, front, clipped,
+               x_begin, x_end, y_begin, y_end);
+
+/// A block of pixels that a triangle touches.
+struct RasterBlock {
+    cl_uint triangle;  ///< in the queue of triangles
+    cl_uint place;     ///< x + 65536 * y of its upper left pixel
+};
+CELLIST_STRUCT(RasterBlock, triangle, place);
+
+/// Entries of the two queues, also those for which they have no room.
+struct RasterCounts {
+    cl_uint triangles;
+    cl_uint blocks;
+};
+CELLIST_STRUCT(RasterCounts, triangles, blocks);
 
 #define RASTER_FMA(a, b, c) std::fma(a, b, c)
 #define RASTER_RINT(a) std::rint(a)

@@ -59,11 +59,13 @@ static inline void raster_emit(RASTER_TARGET, const View* view,
         static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
     Buffer<cl_uint> counts(device(), pixels * static_cast<std::size_t>(samples));
     Buffer<cl_float> depths(device(), pixels);
-    counts.fill(0);
-    depths.fill(0);
     projection.transform();
-    triangles.bin();
-    triangles.draw(pass, counts, depths);
+    do {
+        counts.fill(0);
+        depths.fill(0);
+        triangles.bin();
+        triangles.draw(pass, counts, depths);
+    } while (!triangles.complete());
     return {counts.download(), depths.download()};
 }
 
