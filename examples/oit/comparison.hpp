@@ -16,6 +16,7 @@ namespace oit {
 /// channel.
 struct Comparison {
     double psnr_db = 0;  ///< infinite where the pictures are equal
+    double ssim = 0;     ///< mean structural similarity of luma; 1 where the pictures are equal
     double max_abs_error = 0;
     std::uint64_t pixels = 0;
     std::uint64_t pixels_over = 0;              ///< error over 1/255

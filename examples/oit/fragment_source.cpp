@@ -134,6 +134,14 @@ void FragmentSource::move_to(double time) {
     projection_.move(placed_at(frame_.scene, time), frame_.views);
 }
 
+void FragmentSource::follow() {
+    const Needs now = needs_of(frame_);
+    needs_.least_depth = now.least_depth;
+    needs_.greatest_depth = now.greatest_depth;
+    constants_ = constants_of(frame_, needs_);
+    move_to(frame_.time);
+}
+
 void FragmentSource::transform() { projection_.transform(); }
 
 void FragmentSource::prepare() {

@@ -29,6 +29,9 @@ public:
     /// Moves what moves to where it is at a time in seconds. Blocks.
     void move_to(double time);
 
+    /// The frame has another time, or other views of the same size. Blocks.
+    void follow();
+
     /// Projects the vertices. Does not block.
     void transform();
 

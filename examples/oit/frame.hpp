@@ -38,6 +38,8 @@ struct Quality {
     /// Transparent surfaces are drawn with as many times fewer pixels a side, 1, 2 or 4, and enlarged
     /// along the edges of the opaque ones: see reduction.hpp.
     int reduce = 1;
+    /// What the method is compiled for, of MethodInfo::sizes; none means its default.
+    std::optional<std::uint32_t> size = {};
 };
 
 /// Everything that determines a picture; the device and the reference draw the same.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fragment_source.hpp"
+#include "scene_measure.hpp"
 
 namespace oit {
 
@@ -47,16 +48,35 @@ public:
     [[nodiscard]] virtual std::optional<StoredDepths> depths() const { return {}; }
 };
 
+/// For methods of which no bound is known.
+[[nodiscard]] std::optional<PictureError> no_bound(const SceneMeasure& scene,
+                                                   const Quality& quality);
+/// Of methods that blend all layers, packed in their order; or the nearest, or until little light
+/// passes, in float.
+[[nodiscard]] std::optional<PictureError> bound_of_layers(const SceneMeasure& scene,
+                                                          const Quality& quality);
+[[nodiscard]] std::uint64_t one_pass(const SceneMeasure& scene, const Quality& quality);
+[[nodiscard]] std::uint64_t two_passes(const SceneMeasure& scene, const Quality& quality);
+
 /// A line of the table of methods.
 struct MethodInfo {
     std::string_view name;
     std::string_view summary;  ///< what it does and where it comes from, in one line
     int position;              ///< in the table
     bool exact;                ///< the image of all fragments, up to rounding
+    /// What it can be compiled for (layers, trials, steps ...), smallest first: Quality::size. Nothing
+    /// where there is no such choice.
+    std::span<const std::uint32_t> sizes = {};
     /// Why it cannot draw a frame, or nothing.
     std::string (*refusal)(const Frame& frame, const Needs& needs);
     /// Refers to the source, which must outlive the method.
     std::unique_ptr<Method> (*make)(FragmentSource& source);
+    /// The error of its picture at most, apart from what depends on an order that float depths do not
+    /// tell; nothing where theory has no bound.
+    std::optional<PictureError> (*bound)(const SceneMeasure& scene,
+                                         const Quality& quality) = no_bound;
+    /// How often it draws the transparent surfaces, at least.
+    std::uint64_t (*passes)(const SceneMeasure& scene, const Quality& quality) = one_pass;
 };
 
 /// Puts a method into the table: a constant in the method's file.
@@ -70,6 +90,9 @@ public:
 
 /// Throws InputError, with the names there are, where there is none of this name.
 [[nodiscard]] const MethodInfo& method_named(std::string_view name);
+
+/// The text of a size. Throws InputError, with the sizes there are, where the method has no such size.
+[[nodiscard]] std::uint32_t read_size_of(const MethodInfo& method, const std::string& text);
 
 /// For methods that draw every frame.
 [[nodiscard]] std::string refuses_nothing(const Frame& frame, const Needs& needs);

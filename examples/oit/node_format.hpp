@@ -34,4 +34,10 @@ inline constexpr std::array<NodeFormatName, 5> node_formats{{
     {NodeFormat::rgb565_d16, "rgb565_d16"},
 }};
 
+[[nodiscard]] constexpr std::string_view name_of(NodeFormat format) {
+    for (const NodeFormatName& entry : node_formats)
+        if (entry.format == format) return entry.name;
+    return {};
+}
+
 }  // namespace oit

@@ -131,19 +131,24 @@ double NodeLayout::depth_of(std::uint32_t key, const Needs& needs) const {
     return least + part * (greatest - least);
 }
 
-double NodeLayout::depth_resolution(double depth, const Needs& needs) const {
-    const double of_float = oit::depth_resolution * depth;
+DepthResolution NodeLayout::depth_resolution(const Needs& needs) const {
+    DepthResolution resolution{.linear = oit::depth_resolution};
     const std::uint32_t bits = depth_bits(format);
-    // 1 / depth is rounded once more.
-    if (bits == 0) return depth_scale == DepthScale::reversed ? 1.125 * of_float : of_float;
+    if (bits == 0) {
+        // 1 / depth is rounded once more.
+        if (depth_scale == DepthScale::reversed) resolution.linear *= 1.125;
+        return resolution;
+    }
     const auto least = static_cast<double>(needs.least_depth);
     const auto greatest = static_cast<double>(needs.greatest_depth);
     const double steps = static_cast<double>((1U << bits) - 1);
-    if (depth_scale == DepthScale::linear) {
-        // Steps are counted in float, from the least depth.
-        return (greatest - least) / steps * (1 + steps * 0x1p-22) + of_float;
-    }
-    return depth * depth * (1 / least - 1 / greatest) / steps * (1 + steps * 0x1p-22) + of_float;
+    // Steps are counted in float, from the least depth.
+    const double step = (1 + steps * 0x1p-22) / steps;
+    if (depth_scale == DepthScale::linear)
+        resolution.constant = (greatest - least) * step;
+    else
+        resolution.quadratic = (1 / least - 1 / greatest) * step;
+    return resolution;
 }
 
 double NodeLayout::colour_error(const Needs& needs) const {

@@ -41,6 +41,16 @@ struct NodeField {
     std::uint32_t bits = 0;  ///< 0 where nodes do not have the field
 };
 
+/// How much two depths differ at least if nodes have them in the right order.
+struct DepthResolution {
+    double constant = 0, linear = 0, quadratic = 0;
+
+    /// Between depths of up to `depth`.
+    [[nodiscard]] double at(double depth) const {
+        return constant + depth * (linear + depth * quadratic);
+    }
+};
+
 /// What lies where in the nodes of a frame. Colour and depth lie where the format says; members that
 /// only some frames need fill what room the format leaves, or words of their own.
 struct NodeLayout {
@@ -56,8 +66,7 @@ struct NodeLayout {
 
     /// The depth in a key. `needs` gives the range of quantised depths.
     [[nodiscard]] double depth_of(std::uint32_t key, const Needs& needs) const;
-    /// How much two depths of up to `depth` differ at least if nodes have them in the right order.
-    [[nodiscard]] double depth_resolution(double depth, const Needs& needs) const;
+    [[nodiscard]] DepthResolution depth_resolution(const Needs& needs) const;
     /// How far a channel of a colour in a node is from the fragment's, at most.
     [[nodiscard]] double colour_error(const Needs& needs) const;
     /// The same for an opacity.

@@ -5,30 +5,22 @@
 #include <optional>
 #include <string>
 
-#include "camera.hpp"
-#include "frame.hpp"
+#include "budget.hpp"
+#include "frame_options.hpp"
 
 namespace oit {
 
 /// What the command line asks for.
-struct Options {
-    std::string scene;  ///< a mesh file, or the name of a computed scene
+struct Options : FrameOptions {
     std::string method = "linked";
-    int width = 1280;
-    int height = 720;
-    float alpha = 0.35F;
-    support::Orbit orbit{.azimuth_degrees = 25, .elevation_degrees = 8};
-    std::optional<double> eye_separation = {};  ///< for two eyes
-    double time = 0;                            ///< of the scene, in seconds
-    bool opaque_floor = false;
-    Quality quality = {};
     std::optional<std::uint64_t> memory_bytes = {};  ///< that the method may take
-    std::optional<Blend> blend = {};  ///< of all transparent surfaces; else the scene decides
-    std::optional<BlendFunction> blend_function = {};
+    std::optional<Budget> budget = {};               ///< chooses method and setting
+    std::uint32_t check_every = 1;                   ///< of the frames that change, within a budget
+    std::optional<double> until = {};  ///< the last frame's time; the first is at `time`
+    double turn_degrees = 0;           ///< from the first frame to the last
     bool reference = false;
     std::filesystem::path out = "oit.png";
     std::filesystem::path json = {};
-    std::string device = {};
     std::uint32_t frames = 5;
     bool help = false;
     std::string help_text = {};

@@ -30,13 +30,19 @@ raster::View reduced_view(const raster::View& view, int block) {
     return reduced;
 }
 
+std::vector<raster::View> reduced_views(const Frame& frame) {
+    std::vector<raster::View> views = frame.views;
+    for (raster::View& view : views) view = reduced_view(view, frame.quality.reduce);
+    return views;
+}
+
 Frame reduced_frame(const Frame& frame) {
     if (frame.quality.samples > 1)
         throw support::InputError(
             "surfaces at reduced resolution have one sample a pixel: draw with fewer samples, or "
             "without reducing");
     Frame reduced = frame;
-    for (raster::View& view : reduced.views) view = reduced_view(view, frame.quality.reduce);
+    reduced.views = reduced_views(frame);
     return reduced;
 }
 
@@ -71,13 +77,21 @@ cellist::Range pixels_of(const Frame& frame) {
 }  // namespace
 
 Reduction::Reduction(const cellist::Device& device, const Frame& frame)
-    : reduced_(reduced_frame(frame)),
+    : frame_(frame),
+      reduced_(reduced_frame(frame)),
       opaque_scene_(opaque_part(frame.scene)),
       opaque_{.scene = opaque_scene_, .views = frame.views, .time = frame.time},
       source_(device, opaque_),
       backdrop_(source_.screen_kernel(kernels::backdrop_cl, "backdrop.cl", "oit_backdrop")),
       shrink_(device, kernel_source(source_, frame.quality.reduce), "oit_shrink"),
       enlarge_(device, kernel_source(source_, frame.quality.reduce), "oit_enlarge") {}
+
+void Reduction::follow() {
+    reduced_.views = reduced_views(frame_);
+    reduced_.time = opaque_.time = frame_.time;
+    opaque_.views = frame_.views;
+    source_.follow();
+}
 
 void Reduction::prepare(const FragmentSource& transparent) {
     // The reduced frame begins with what is drawn here, so nothing may be missing.

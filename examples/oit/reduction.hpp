@@ -25,6 +25,8 @@ public:
     [[nodiscard]] const Frame& reduced() const { return reduced_; }
 
     void move_to(double time) { source_.move_to(time); }
+    /// Takes the frame's views and time, which may have changed. Blocks.
+    void follow();
     void transform() { source_.transform(); }
     /// Draws the opaque surfaces, and writes their depths for the reduced frame. Blocks.
     void prepare(const FragmentSource& transparent);
@@ -36,6 +38,7 @@ public:
     [[nodiscard]] std::uint64_t device_bytes() const { return source_.device_bytes(); }
 
 private:
+    const Frame& frame_;
     Frame reduced_;
     Scene opaque_scene_;
     Frame opaque_;

@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "input_error.hpp"
 #include "node_layout.hpp"
 #include "reference_blend.hpp"
 #include "reference_raster.hpp"
@@ -45,6 +46,8 @@ public:
           layout_(node_layout(frame.quality, needs_)),
           samples_(static_cast<std::size_t>(frame.quality.samples)),
           opaque_(frame.pixels() * samples_) {
+        reference_.width = static_cast<std::size_t>(frame.width());
+        reference_.height = static_cast<std::size_t>(frame.height());
         reference_.ambiguous.assign(frame.pixels(), false);
         reference_.image.resize(frame.pixels());
         for (const Instance& instance : frame.scene.instances)
@@ -90,7 +93,7 @@ private:
     [[nodiscard]] bool too_close(double a, double b) const {
         // Infinity is the depth of no surface, which is close to nothing.
         return std::isfinite(a) && std::isfinite(b) &&
-               std::abs(a - b) <= layout_.depth_resolution(std::max(a, b), needs_);
+               std::abs(a - b) <= layout_.depth_resolution(needs_).at(std::max(a, b));
     }
     // The same for depths that are compared before they are stored.
     [[nodiscard]] static bool float_too_close(double a, double b) {
@@ -274,7 +277,16 @@ double swap_error(const ReferenceFragment& a, const ReferenceFragment& b) {
     return a.alpha * b.alpha * std::max({difference.x, difference.y, difference.z});
 }
 
+std::uint64_t Reference::most_layers() const {
+    std::uint64_t most = 0;
+    for (std::size_t p = 0; p + 1 < offsets.size(); ++p)
+        most = std::max(most, offsets[p + 1] - offsets[p]);
+    return most;
+}
+
 Reference draw_reference(const Frame& frame, const ReferenceOptions& options) {
+    if (needs_of(frame).has(Blend::user) && !options.blend)
+        throw support::InputError("a blend function in OpenCL C has no reference to compare with");
     return Painter(frame, options).draw();
 }
 

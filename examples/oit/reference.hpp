@@ -22,12 +22,16 @@ struct ReferenceFragment {
 
 /// A frame in double precision.
 struct Reference {
+    std::size_t width = 0, height = 0;         ///< of an eye's image
     std::vector<glm::dvec3> image;             ///< linear, eye by eye
     std::vector<std::uint64_t> offsets;        ///< pixels + 1 offsets into `fragments`
     std::vector<ReferenceFragment> fragments;  ///< by pixel, nearest first
     /// Pixels where the nodes' format cannot tell the order of two fragments that count, or float
     /// whether a fragment is behind the opaque surface.
     std::vector<bool> ambiguous;
+
+    /// Fragments of the pixel that has the most.
+    [[nodiscard]] std::uint64_t most_layers() const;
 };
 
 struct ReferenceOptions {
@@ -45,7 +49,8 @@ struct ReferenceOptions {
 
 /// Draws a frame on the CPU: snapped geometry as on the device, everything else in double
 /// precision, exactly sorted. All fragments of Quality::layers are blended, whatever epsilon and
-/// node format are. One thread.
+/// node format are. Throws InputError where a user's function blends on the device and none is given
+/// for here. One thread.
 [[nodiscard]] Reference draw_reference(const Frame& frame, const ReferenceOptions& options = {});
 
 }  // namespace oit

@@ -75,6 +75,12 @@ double Renderer::draw_at(double time) {
     return draw();
 }
 
+double Renderer::draw_changed() {
+    if (reduction_) reduction_->follow();
+    source_.follow();
+    return draw();
+}
+
 PassTimes Renderer::draw_by_pass() {
     PassTimes times;
     const auto measure = [&](double PassTimes::*pass, auto enqueue) {

@@ -36,9 +36,14 @@ public:
     /// The same with a wait behind each pass, so that a frame takes longer.
     PassTimes draw_by_pass();
 
+    /// The same where the frame has another time, or other views of the same size.
+    double draw_changed();
+
     /// The linear image, eye by eye, row by row from the top.
-    [[nodiscard]] std::vector<cl_float4> image() const {
-        return (reduction_ ? reduction_->image() : source_.image()).download();
+    [[nodiscard]] std::vector<cl_float4> image() const { return picture().download(); }
+    /// The same on the device.
+    [[nodiscard]] const cellist::Buffer<cl_float4>& picture() const {
+        return reduction_ ? reduction_->image() : source_.image();
     }
     [[nodiscard]] const Method& method() const { return *method_; }
     [[nodiscard]] const Needs& needs() const { return source_.needs(); }

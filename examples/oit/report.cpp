@@ -4,28 +4,15 @@
 #include <fstream>
 #include <iomanip>
 #include <ostream>
-#include <sstream>
 
 #include <nlohmann/json.hpp>
 
 #include "input_error.hpp"
+#include "number_text.hpp"
+#include "setting.hpp"
 
 namespace oit {
 namespace {
-
-std::string grouped(std::uint64_t value) {
-    std::string digits = std::to_string(value);
-    for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, ",");
-    return digits;
-}
-
-std::string fixed(double value, int decimals) {
-    std::ostringstream out;
-    out << std::fixed << std::setprecision(decimals) << value;
-    return out.str();
-}
-
-std::string megabytes(std::uint64_t bytes) { return fixed(static_cast<double>(bytes) / 1e6, 1); }
 
 std::string dropped_text(const support::MeshDrops& drops) {
     std::string text;
@@ -52,6 +39,7 @@ void print_comparison(const Comparison& c, std::ostream& out) {
         return out << "  " << std::left << std::setw(18) << name << std::right;
     };
     line("PSNR") << fixed(c.psnr_db, 1) << " dB against double precision\n";
+    line("SSIM") << fixed(c.ssim, 6) << '\n';
     line("largest error") << fixed(255 * c.max_abs_error, 4) << " / 255\n";
     line("over 1/255") << grouped(c.pixels_over) << " of " << grouped(c.pixels) << " pixels, "
                        << grouped(c.pixels_explained)
@@ -80,8 +68,8 @@ void print(const Report& report, std::ostream& out) {
                                    : "all layers")
         << (options.opaque_floor ? ", opaque floor" : "") << '\n';
     line("device") << report.device << " (driver " << report.driver << ")\n";
-    line("method") << options.method << ", nodes of " << report.node_bytes << " bytes, "
-                   << options.quality.samples
+    line("method") << method_text({&method_named(options.method), options.quality}) << ", nodes of "
+                   << report.node_bytes << " bytes, " << options.quality.samples
                    << (options.quality.samples == 1 ? " sample" : " samples") << " a pixel\n";
     if (options.quality.reduce > 1)
         line("reduced") << "transparent surfaces drawn with " << options.quality.reduce
@@ -101,6 +89,7 @@ void print(const Report& report, std::ostream& out) {
     line("raster + insert") << fixed(report.passes.raster_insert_ms, 2) << " ms\n";
     line("sort + blend") << fixed(report.passes.sort_blend_ms, 2) << " ms\n";
     line("frame") << fixed(report.frame_ms, 2) << " ms (median of " << options.frames << ")\n";
+    if (report.choice) print(*report.choice, *options.budget, report.kept, out);
     if (options.quality.epsilon > 0) line("early end") << early_end_text(report) << '\n';
     if (report.pixels_nan > 0)
         line("NaN") << grouped(report.pixels_nan) << " pixels, drawn black\n";
@@ -116,7 +105,7 @@ void write_json(const Report& report, const std::filesystem::path& path) {
     json["device"] = report.device;
     json["driver"] = report.driver;
     json["scene"] = std::filesystem::path(options.scene).filename().string();
-    json["method"] = options.method;
+    json["method"] = method_text({&method_named(options.method), options.quality});
     json["width"] = options.width;
     json["height"] = options.height;
     json["alpha"] = options.alpha;
@@ -148,15 +137,18 @@ void write_json(const Report& report, const std::filesystem::path& path) {
     json["pixels_nan"] = report.pixels_nan;
     json["device_bytes"] = report.device_bytes;
     json["frames"] = options.frames;
+    if (report.choice) json["budget"] = json_of(*report.choice, *options.budget, report.kept);
     json["time_ms"] = {{"transform", report.passes.transform_ms},
                        {"raster_insert", report.passes.raster_insert_ms},
                        {"sort_blend", report.passes.sort_blend_ms},
                        {"frame", report.frame_ms}};
     json["psnr_db"] = nullptr;
+    json["ssim"] = nullptr;
     json["max_abs_error"] = nullptr;
     if (report.comparison) {
         const Comparison& c = *report.comparison;
         if (std::isfinite(c.psnr_db)) json["psnr_db"] = c.psnr_db;
+        json["ssim"] = c.ssim;
         json["max_abs_error"] = c.max_abs_error;
         json["reference"] = {{"pixels_over_1_255", c.pixels_over},
                              {"pixels_explained", c.pixels_explained},

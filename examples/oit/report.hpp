@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "choice_report.hpp"
 #include "comparison.hpp"
 #include "mesh.hpp"
 #include "options.hpp"
@@ -31,6 +32,8 @@ struct Report {
     double frame_ms = 0;   ///< from clearing to the image on the device, median
     PassTimes passes;      ///< medians
     std::optional<Comparison> comparison;
+    std::optional<Choice> choice;  ///< for a budget
+    KeptBudget kept;
 };
 
 /// One screen for people.

@@ -133,7 +133,7 @@ TEST_CASE("depths in nodes are as fine as they are said to be") {
                 for (std::size_t i = 0; i < depths.size(); ++i) {
                     const double depth = reference.fragments[reference.offsets[p] + i].depth;
                     if (std::abs(depths[i] - depth) >
-                        renderer.layout().depth_resolution(depth, renderer.needs()))
+                        renderer.layout().depth_resolution(renderer.needs()).at(depth))
                         ++wrong;
                 }
             }

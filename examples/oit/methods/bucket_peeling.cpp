@@ -1,4 +1,5 @@
 // Each pass takes a layer of each of several ranges of depth.
+#include <array>
 #include <bit>
 #include <limits>
 
@@ -8,7 +9,8 @@
 namespace oit {
 namespace {
 
-constexpr std::size_t buckets = 8;
+constexpr std::array sizes{2U, 4U, 8U, 16U, 32U};
+constexpr std::uint32_t default_buckets = 8;
 
 // Least and greatest depth, as bits.
 struct Range {
@@ -20,24 +22,29 @@ std::string refusal(const Frame& frame, const Needs& needs) {
     return peeling_refusal(frame, needs);
 }
 
-std::string text(const std::string& define) {
-    return "#define OIT_BUCKETS " + std::to_string(buckets) + "\n#define " + define + "\n" +
-           peeling_text(kernels::bucket_peeling_cl);
+std::size_t buckets_of(const FragmentSource& source) {
+    return source.frame().quality.size.value_or(default_buckets);
+}
+
+std::string text(const FragmentSource& source, const std::string& define) {
+    return "#define OIT_BUCKETS " + std::to_string(buckets_of(source)) + "\n#define " + define +
+           "\n" + peeling_text(kernels::bucket_peeling_cl);
 }
 
 class BucketPeeling : public Method {
 public:
     explicit BucketPeeling(FragmentSource& source)
         : source_(source),
-          find_range_(source.pass(text("OIT_FIND_RANGE"), "bucket_peeling.cl")),
-          find_keys_(source.pass(text("OIT_FIND_KEYS"), "bucket_peeling.cl")),
-          take_(source.pass(text("OIT_TAKE"), "bucket_peeling.cl")),
-          peel_(source.screen_kernel(text("OIT_PEEL"), "bucket_peeling.cl", "oit_peel_buckets")),
-          finish_(
-              source.screen_kernel(text("OIT_PEEL"), "bucket_peeling.cl", "oit_finish_peeling")),
+          find_range_(source.pass(text(source, "OIT_FIND_RANGE"), "bucket_peeling.cl")),
+          find_keys_(source.pass(text(source, "OIT_FIND_KEYS"), "bucket_peeling.cl")),
+          take_(source.pass(text(source, "OIT_TAKE"), "bucket_peeling.cl")),
+          peel_(source.screen_kernel(text(source, "OIT_PEEL"), "bucket_peeling.cl",
+                                     "oit_peel_buckets")),
+          finish_(source.screen_kernel(text(source, "OIT_PEEL"), "bucket_peeling.cl",
+                                       "oit_finish_peeling")),
           begin_(source.device(), source.frame().pixels()),
           range_(source.device(), source.frame().pixels()),
-          keys_(source.device(), buckets * source.frame().pixels()),
+          keys_(source.device(), buckets_of(source) * source.frame().pixels()),
           counts_(source.device(), keys_.size()),
           nodes_(source.device(), source.layout().words * keys_.size()),
           state_(source.device(), source.state_floats() * source.frame().pixels()),
@@ -86,13 +93,19 @@ private:
     cellist::Buffer<cl_uint> left_;
 };
 
+// The range of depth, then keys and layers at least once.
+std::uint64_t passes(const SceneMeasure&, const Quality&) { return 3; }
+
 const MethodRegistration bucket_peeling(
     {.name = "bucket_peeling",
-     .summary = "a layer of each of 8 ranges of depth a pass (Liu et al. 2009)",
+     .summary = "a layer of each of 8 or other ranges of depth a pass (Liu et al. 2009)",
      .position = 6,
      .exact = true,
+     .sizes = sizes,
      .refusal = refusal,
-     .make = make_peeling<BucketPeeling>});
+     .make = make_peeling<BucketPeeling>,
+     .bound = bound_of_layers,
+     .passes = passes});
 
 }  // namespace
 }  // namespace oit

@@ -14,7 +14,9 @@ const MethodRegistration counted(
      .position = 2,
      .exact = true,
      .refusal = refuses_nothing,
-     .make = make});
+     .make = make,
+     .bound = bound_of_layers,
+     .passes = two_passes});
 
 }  // namespace
 }  // namespace oit

@@ -64,13 +64,17 @@ private:
     cellist::Buffer<cl_uint> left_;
 };
 
+std::uint64_t passes(const SceneMeasure& scene, const Quality&) { return scene.longest / 2 + 1; }
+
 const MethodRegistration dual_peeling(
     {.name = "dual_peeling",
      .summary = "the nearest and the farthest layer a pass (Bavoil, Myers 2008)",
      .position = 5,
      .exact = true,
      .refusal = refusal,
-     .make = make_peeling<DualPeeling>});
+     .make = make_peeling<DualPeeling>,
+     .bound = bound_of_layers,
+     .passes = passes});
 
 }  // namespace
 }  // namespace oit

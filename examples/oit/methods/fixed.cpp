@@ -14,7 +14,8 @@ const MethodRegistration fixed(
      .position = 3,
      .exact = true,
      .refusal = refuses_nothing,
-     .make = make});
+     .make = make,
+     .bound = bound_of_layers});
 
 }  // namespace
 }  // namespace oit

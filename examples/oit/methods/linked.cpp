@@ -13,7 +13,8 @@ const MethodRegistration linked({.name = "linked",
                                  .position = 1,
                                  .exact = true,
                                  .refusal = refuses_nothing,
-                                 .make = make});
+                                 .make = make,
+                                 .bound = bound_of_layers});
 
 }  // namespace
 }  // namespace oit

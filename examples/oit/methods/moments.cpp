@@ -45,7 +45,8 @@ const MethodRegistration moments(
      .position = 10,
      .exact = false,
      .refusal = accumulating_refusal,
-     .make = make_accumulating<Moments>});
+     .make = make_accumulating<Moments>,
+     .passes = two_passes});
 
 }  // namespace
 }  // namespace oit

@@ -1,6 +1,8 @@
 // The scene is drawn once for each layer, and takes the nearest that is behind the last.
 #include "peeling.hpp"
 
+#include <algorithm>
+
 #include "oit_kernels.hpp"
 
 namespace oit {
@@ -53,13 +55,19 @@ private:
     cellist::Buffer<cl_uint> left_;
 };
 
+std::uint64_t passes(const SceneMeasure& scene, const Quality& quality) {
+    return std::min<std::uint64_t>(scene.longest, quality.layers.value_or(~0U)) + 1;
+}
+
 const MethodRegistration peeling(
     {.name = "peeling",
      .summary = "depth peeling: the scene is drawn once for each layer (Everitt 2001)",
      .position = 4,
      .exact = true,
      .refusal = peeling_refusal,
-     .make = make_peeling<Peeling>});
+     .make = make_peeling<Peeling>,
+     .bound = bound_of_layers,
+     .passes = passes});
 
 }  // namespace
 }  // namespace oit

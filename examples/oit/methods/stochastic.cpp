@@ -1,4 +1,5 @@
 // Fragments hide each other at random, in a number of trials.
+#include <array>
 #include <bit>
 #include <limits>
 
@@ -8,23 +9,28 @@
 namespace oit {
 namespace {
 
-constexpr std::uint32_t trials = 8;
+constexpr std::array sizes{2U, 4U, 8U, 16U, 32U, 64U};
+constexpr std::uint32_t default_trials = 8;
 constexpr cl_uint infinity_bits = std::bit_cast<cl_uint>(std::numeric_limits<cl_float>::infinity());
 
-std::string text(const std::string& define) {
-    return "#define OIT_TRIALS " + std::to_string(trials) + "\n#define " + define + "\n" +
-           accumulating_text(kernels::stochastic_cl);
+std::uint32_t trials_of(const FragmentSource& source) {
+    return source.frame().quality.size.value_or(default_trials);
+}
+
+std::string text(const FragmentSource& source, const std::string& define) {
+    return "#define OIT_TRIALS " + std::to_string(trials_of(source)) + "\n#define " + define +
+           "\n" + accumulating_text(kernels::stochastic_cl);
 }
 
 class Stochastic : public Method {
 public:
     explicit Stochastic(FragmentSource& source)
         : source_(source),
-          hide_(source.pass(text("OIT_HIDE"), "stochastic.cl")),
-          add_(source.pass(text("OIT_ADD"), "stochastic.cl")),
-          resolve_(
-              source.screen_kernel(text("OIT_RESOLVE"), "stochastic.cl", "oit_resolve_stochastic")),
-          depths_(source.device(), trials * source.samples()),
+          hide_(source.pass(text(source, "OIT_HIDE"), "stochastic.cl")),
+          add_(source.pass(text(source, "OIT_ADD"), "stochastic.cl")),
+          resolve_(source.screen_kernel(text(source, "OIT_RESOLVE"), "stochastic.cl",
+                                        "oit_resolve_stochastic")),
+          depths_(source.device(), trials_of(source) * source.samples()),
           sums_(source.device(), 5 * source.samples()) {}
 
     void store() override {
@@ -49,11 +55,13 @@ private:
 
 const MethodRegistration stochastic(
     {.name = "stochastic",
-     .summary = "8 random trials of which fragments hide others (Enderton et al. 2010)",
+     .summary = "8 or other random trials of which fragments hide others (Enderton et al. 2010)",
      .position = 9,
      .exact = false,
+     .sizes = sizes,
      .refusal = accumulating_refusal,
-     .make = make_accumulating<Stochastic>});
+     .make = make_accumulating<Stochastic>,
+     .passes = two_passes});
 
 }  // namespace
 }  // namespace oit

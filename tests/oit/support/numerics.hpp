@@ -76,7 +76,7 @@ inline double swaps(const oit::Renderer& renderer, const oit::Reference& referen
     for (std::size_t i = reference.offsets[pixel]; i < reference.offsets[pixel + 1]; ++i)
         for (std::size_t j = i + 1; j < reference.offsets[pixel + 1]; ++j) {
             if (all[j].depth - all[i].depth >
-                renderer.layout().depth_resolution(all[j].depth, renderer.needs()))
+                renderer.layout().depth_resolution(renderer.needs()).at(all[j].depth))
                 break;
             sum += oit::swap_error(all[i], all[j]);
         }
@@ -210,7 +210,7 @@ inline DepthFigures measure(const Device& device, const DepthCase& depth_case) {
 
     DepthFigures figures;
     const auto resolution = [&](double depth) {
-        return renderer.layout().depth_resolution(depth, renderer.needs());
+        return renderer.layout().depth_resolution(renderer.needs()).at(depth);
     };
     for (std::size_t i = 0; i < shown_depths.size(); ++i)
         figures.gaps[i] = resolution(shown_depths[i]);
