@@ -77,7 +77,7 @@ Budget parse_budget(std::string_view text) {
     }
     const auto largest = fraction(text);
     if (!largest) refuse(text, std::string(expected));
-    if (*largest > 1) refuse(text, "no error is larger than 1; a PSNR is written as 40dB");
+    if (*largest >= 1) refuse(text, "no error is larger than 1; a PSNR is written as 40dB");
     if (!(*largest > 0)) refuse(text, "an error above 0: no picture of floats is without");
     return {Budget::Kind::largest, *largest};
 }
