@@ -36,7 +36,9 @@ cl_uint LinkedStorage::hands_with(std::uint64_t capacity_nodes) const {
         return 0;
     const cl_uint hands = std::bit_ceil(std::max(2 * device_->info.compute_units, 8U));
     const std::uint64_t nodes = std::uint64_t{hands} * CELLIST_BLOCK_NODES;
-    return hands_part * nodes <= capacity_nodes ? hands : 0;
+    const bool fit = hands_part * nodes <= capacity_nodes &&
+                     capacity_nodes <= CELLIST_CAPACITY_NODES_MAX - nodes;
+    return fit ? hands : 0;
 }
 
 void LinkedStorage::clear() {
