@@ -136,7 +136,8 @@ private:
         // A bound of float nodes is what is left out, and little more.
         else if (bound && setting.quality.format == NodeFormat::float32 && !budget_.met_by(*bound))
             candidate.fate = Fate::over_budget;
-        else if (has_enough(setting))
+        // With no fragments all settings draw the same.
+        else if (choice_.scene.longest == 0 || has_enough(setting))
             candidate.fate = Fate::not_needed;
         else if (is_predicted_slow(setting))
             candidate.fate = Fate::slower;
