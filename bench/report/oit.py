@@ -64,8 +64,16 @@ def part_within(figure):
 
 
 def unexplained(figure):
-    """Pixels beyond 1/255 although float tells the order of their layers."""
+    """Pixels beyond 1/255 although float tells the order of their layers and opaque surfaces."""
     return figure["pixels_over"] - figure["pixels_explained"]
+
+
+def causes(figure):
+    """Of the pixels beyond 1/255, how many there are of each cause. Where another order of close layers
+    is not the cause, it is a layer or a surface close to an opaque one."""
+    order = figure["pixels_of_another_order"]
+    return {"order of layers": order, "close to an opaque surface": figure["pixels_explained"] - order,
+            "unexplained": unexplained(figure)}
 
 
 def _goal(name, case, text, value, asked=None, is_met=None):

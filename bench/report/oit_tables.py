@@ -25,6 +25,8 @@ def goals_as_text(results):
 
 
 def _table(head, rows):
+    if not rows:
+        return "Not measured yet."
     return "\n".join("| " + " | ".join(row) + " |" for row in [head, ["---"] * len(head), *rows])
 
 
@@ -101,20 +103,24 @@ def plain_cpp(all_results):
 
 
 def accuracy(all_results):
-    """Pixels beyond 1/255, and the largest error, in steps of 8 bits."""
+    """Pixels beyond 1/255 with their causes, and the largest error in steps of 8 bits."""
     head = ["scene", "pixels"]
     for results in all_results:
-        head += [f"over 1/255, {device_title(results)}", "of these with an order that float does not tell",
-                 "largest error · 255", "PSNR"]
+        head += [f"beyond 1/255, {device_title(results)}", "largest error · 255", "PSNR"]
     rows = []
     for case in oit.cases("accuracy", all_results):
         found = [_only(oit.figures(results, "accuracy", case=case)) for results in all_results]
         row = [case, f"{next(figure for figure in found if figure)['pixels']:,}"]
         for figure in found:
-            row += [f"{figure['pixels_over']:,}", f"{figure['pixels_explained']:,}",
-                    f"{255 * figure['max_abs_error']:.2g}", _decibels(figure)] if figure else ["–"] * 4
+            row += [_pixels_over(figure), f"{255 * figure['max_abs_error']:.2g}", _decibels(figure)] if figure \
+                else ["–"] * 3
         rows.append(row)
     return _table(head, rows)
+
+
+def _pixels_over(figure):
+    causes = [f"{count:,} {cause}" for cause, count in oit.causes(figure).items() if count > 0]
+    return f"{figure['pixels_over']:,}" + (f": {', '.join(causes)}" if causes else "")
 
 
 def budget_grid(all_results):

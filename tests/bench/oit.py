@@ -54,7 +54,7 @@ class TinyRun(unittest.TestCase):
             folder = pathlib.Path(directory)
             write_meshes(folder)
             results, printed = run(folder, "--meshes", folder, "--size", "0.08", "--filter",
-                                   "^(frame_times|exact_methods|fewer_layers|plain_cpp)/|^accuracy/(teapot|smoke)")
+                                   "^(frame_times|exact_methods|fewer_layers|plain_cpp)/|^accuracy/(teapot|smoke|extreme-coplanar)")
         self.assertNotIn("left_out", results)
         self.assertEqual(results["git"], "abc")
         self.assertEqual(oit.cases("frame_times", [results]), list(oit.FRAMES_PER_SECOND))
@@ -66,6 +66,7 @@ class TinyRun(unittest.TestCase):
             with self.subTest(case=figure["case"]):
                 self.assertEqual(oit.unexplained(figure), 0)
                 self.assertEqual(figure["pixels_with_other_count"], 0)
+                self.assertLessEqual(figure["pixels_of_another_order"], figure["pixels_explained"])
         self.assertIn("plain_cpp", printed)
         for name, table in oit_tables.TABLES.items():
             self.assertEqual(len({line.count("|") for line in table([results]).splitlines()}), 1, name)
@@ -82,7 +83,7 @@ class TinyRun(unittest.TestCase):
 
 def accuracy(case, over, explained):
     return {"case": case, "pixels": 100000, "pixels_over": over, "pixels_explained": explained,
-            "max_abs_error": 0.5, "psnr_db": None}
+            "pixels_of_another_order": min(explained, 9), "max_abs_error": 0.5, "psnr_db": None}
 
 
 class Goals(unittest.TestCase):
@@ -126,6 +127,11 @@ class Goals(unittest.TestCase):
         self.assertTrue(self.goal("cpu", "accuracy", "good")["met"])
         self.assertFalse(self.goal("cpu", "accuracy", "many")["met"])
         self.assertFalse(self.goal("cpu", "accuracy", "strange")["met"])
+
+    def test_pixels_beyond_the_step_have_causes(self):
+        table = oit_tables.accuracy([self.RESULTS])
+        self.assertIn("| 10: 9 order of layers, 1 close to an opaque surface |", table)
+        self.assertIn("| 2: 1 order of layers, 1 unexplained |", table)
 
     def test_all_budgets_are_to_be_met(self):
         goal = self.goal("cpu", "budget_grid", "budget met at a cost within 10 %")

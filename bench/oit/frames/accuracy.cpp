@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "comparison.hpp"
+#include "oit/frames/other_orders.hpp"
 #include "oit/frames/run.hpp"
 #include "renderer.hpp"
 #include "scenes.hpp"
@@ -75,16 +76,18 @@ void measure_accuracy(Run& run) {
         oit::Renderer renderer(run.device(), stage.frame);
         renderer.draw();
         const oit::Reference reference = oit::draw_reference(stage.frame);
-        const oit::Comparison c =
-            oit::compare(reference, renderer.image(), renderer.method().depths());
+        const std::vector<cl_float4> image = renderer.image();
+        const oit::Comparison c = oit::compare(reference, image, renderer.method().depths());
+        const int samples = stage.frame.quality.samples;
         const bool equal = std::isinf(c.psnr_db);
-        return {{{"samples", stage.frame.quality.samples},
+        return {{{"samples", samples},
                  {"eyes", stage.frame.views.size()},
                  {"fragments", c.fragments},
                  {"most_layers", reference.most_layers()},
                  {"pixels", c.pixels},
                  {"pixels_over", c.pixels_over},
                  {"pixels_explained", c.pixels_explained},
+                 {"pixels_of_another_order", pixels_of_another_order(reference, image, samples)},
                  {"pixels_ambiguous", c.pixels_ambiguous},
                  {"pixels_with_other_count", c.pixels_with_other_count},
                  {"pixels_nan", c.pixels_nan},
