@@ -206,6 +206,13 @@ void ListStorage::fill_heads(cl_uint value, std::uint64_t first_word, std::uint6
                             first_word * sizeof value, words * sizeof value, 0, nullptr, nullptr));
 }
 
+void ListStorage::make_pool(std::uint64_t capacity_nodes) {
+    if (const auto reason = refusal(capacity_nodes))
+        throw OverflowError("a slice of " + std::to_string(slice_.cells) + " cells: " + *reason,
+                            {.attempted = capacity_nodes, .dropped = capacity_nodes});
+    allocate_pool(capacity_nodes);
+}
+
 void ListStorage::grow_pool(std::uint64_t capacity_nodes, const BuildReport& report) {
     if (++growths_ == growths_max)
         throw OverflowError("the kernel inserted more records in each of " +

@@ -71,7 +71,7 @@ public:
                                                   std::uint64_t cells) const = 0;
     /// The most nodes that the policy lets the pool have.
     [[nodiscard]] std::uint64_t most_nodes() const;
-    /// Makes room for such lists in the slice, if the policy is to grow.
+    /// Makes room for such lists in the slice, if the policy is to grow. Throws OverflowError.
     virtual void reserve(std::uint64_t total, std::uint64_t longest) = 0;
 
     /// Adds what CELLIST_LISTS declares.
@@ -131,6 +131,8 @@ protected:
     [[nodiscard]] bool empties_pool(bool without_pool) const {
         return options_.overflow == Overflow::grow && (without_pool || nodes_.cl()() == nullptr);
     }
+    /// allocate_pool() for a slice. Throws OverflowError if a limit forbids it.
+    void make_pool(std::uint64_t capacity_nodes);
     /// allocate_pool() for what a build demands. Throws OverflowError where builds demand more in every
     /// pass: the kernel does not repeat itself.
     void grow_pool(std::uint64_t capacity_nodes, const BuildReport& report);

@@ -97,7 +97,7 @@ std::uint64_t CountedStorage::nodes_for(std::uint64_t total, std::uint64_t, std:
 }
 
 void CountedStorage::reserve(std::uint64_t total, std::uint64_t) {
-    if (options_.overflow == Overflow::grow && capacity_nodes_ < total) allocate_pool(total);
+    if (options_.overflow == Overflow::grow && capacity_nodes_ < total) make_pool(total);
 }
 
 std::vector<cl_uint> CountedStorage::counts(BuildReport& report) {

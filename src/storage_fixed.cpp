@@ -80,7 +80,10 @@ std::uint64_t FixedStorage::nodes_for(std::uint64_t, std::uint64_t longest,
 }
 
 void FixedStorage::reserve(std::uint64_t, std::uint64_t longest) {
-    if (options_.overflow == Overflow::grow && slots_ < longest) set_slots(longest);
+    if (options_.overflow != Overflow::grow || slots_ >= longest) return;
+    slots_ = 0;
+    make_pool(nodes_with(longest));
+    slots_ = static_cast<cl_uint>(longest);
 }
 
 std::function<Validation()> FixedStorage::validate() {

@@ -79,7 +79,7 @@ void LinkedStorage::set_slice(const Slice& slice) {
 /// The pool has room for no more than the records of the slice, so reservations take no nodes.
 void LinkedStorage::reserve(std::uint64_t total, std::uint64_t) {
     reserves_ = false;
-    if (options_.overflow == Overflow::grow && capacity_nodes_ < total) allocate_pool(total);
+    if (options_.overflow == Overflow::grow && capacity_nodes_ < total) make_pool(total);
 }
 
 void LinkedStorage::adopt_spare() noexcept {

@@ -131,15 +131,19 @@ class _Run:
         worst = None
         for figure in select(self.figures, "storage"):
             for reads in (1, 8):
+                automatic = f"automatic_{reads}"
                 times = storage_times(figure, reads)
-                chosen = times.pop(f"automatic_{reads}", None)
-                if chosen is None:
+                if automatic not in times:
                     continue
-                best = min((s for s in times if is_choice(figure, s)), key=times.get)
-                if worst is None or chosen / times[best] > worst[0]:
+                # Ratios within a round, where there are any: see bench/storage.cpp.
+                ratio = {s: figure.get(f"{automatic}_to_{s}", times[automatic] / times[s])
+                         for s in times if is_choice(figure, s)}
+                best = max(ratio, key=ratio.get)
+                if worst is None or ratio[best] > worst[0]:
                     case = (f"{figure['distribution']}, {figure['nodes']} nodes, {figure['occupancy']} a cell, "
                             f"{reads} reads")
-                    worst = (chosen / times[best], case, f"automatic {chosen:.4g} ms", f"{best} {times[best]:.4g} ms")
+                    worst = (ratio[best], case, f"automatic {times[automatic]:.4g} ms",
+                             f"{best} {times[best]:.4g} ms")
         if worst:
             self.add("auto_vs_best", "worst: " + worst[1], worst[0], worst[2], worst[3])
         else:

@@ -93,7 +93,8 @@ Comparison compare(const Reference& reference, std::span<const cl_float4> image,
         squares / (3.0 * static_cast<double>(std::max<std::uint64_t>(1, result.pixels)));
     result.psnr_db = -10 * std::log10(mean);
     result.ssim = luma.ssim();
-    if (depths) compare_depths(reference, *depths, result);
+    if (depths && depths->offsets.size() == reference.offsets.size())
+        compare_depths(reference, *depths, result);
     return result;
 }
 

@@ -57,7 +57,9 @@ OitFrame constants_of(const Frame& frame, const Needs& needs) {
             .least_depth = needs.least_depth,
             .greatest_depth = needs.greatest_depth,
             .colour_max = needs.colour_max,
-            .epsilon = frame.quality.epsilon};
+            .epsilon = frame.quality.epsilon,
+            .first_pixel = 0,
+            .end_pixel = static_cast<cl_uint>(frame.pixels())};
 }
 
 cellist::Range screen_of(const Frame& frame, std::size_t samples_across) {
@@ -70,6 +72,8 @@ cellist::Range screen_of(const Frame& frame, std::size_t samples_across) {
 
 std::size_t samples_of(const Quality& quality) { return static_cast<std::size_t>(quality.samples); }
 
+bool is_reduced(const Frame& frame) { return frame.quality.reduce > 1; }
+
 bool resolves_samples(const Quality& quality) {
     return quality.samples > 1 && quality.resolve == Resolve::per_sample;
 }
@@ -80,21 +84,25 @@ raster::Sampling sampling_of(const Quality& quality) {
 
 }  // namespace
 
-FragmentSource::Opaque::Opaque(const FragmentSource& source)
+FragmentSource::Opaque::Passes::Passes(const FragmentSource& source)
     : triangles(source.device_, source.projection_, chosen(source.frame_.scene, true)),
-      depth_pass(source.device_, sampling_of(source.frame_.quality),
-                 joined({source.defines_, kernels::shading_clh, kernels::opaque_depth_cl}),
-                 "opaque_depth.cl", cellist::type<OitFrame>),
-      owner_pass(source.device_, sampling_of(source.frame_.quality),
-                 joined({source.defines_, kernels::shading_clh, kernels::opaque_owner_cl}),
-                 "opaque_owner.cl", cellist::type<OitFrame>),
-      colour_pass(source.device_, sampling_of(source.frame_.quality),
-                  joined({source.defines_, kernels::shading_clh, kernels::normal_clh,
-                          kernels::opaque_colour_cl}),
-                  "opaque_colour.cl", cellist::type<OitFrame>, cellist::type<Material>),
-      depth_bits(source.device_, source.frame_.pixels() * samples_of(source.frame_.quality)),
-      owners(source.device_, depth_bits.size()),
-      colour(source.device_, depth_bits.size()) {}
+      depth(source.device_, sampling_of(source.frame_.quality),
+            joined({source.defines_, kernels::shading_clh, kernels::opaque_depth_cl}),
+            "opaque_depth.cl", cellist::type<OitFrame>),
+      owner(source.device_, sampling_of(source.frame_.quality),
+            joined({source.defines_, kernels::shading_clh, kernels::opaque_owner_cl}),
+            "opaque_owner.cl", cellist::type<OitFrame>),
+      colour(source.device_, sampling_of(source.frame_.quality),
+             joined({source.defines_, kernels::shading_clh, kernels::normal_clh,
+                     kernels::opaque_colour_cl}),
+             "opaque_colour.cl", cellist::type<OitFrame>, cellist::type<Material>),
+      owners(source.device_, source.samples()) {}
+
+FragmentSource::Opaque::Opaque(const FragmentSource& source)
+    : depth_bits(source.device_, source.samples()),
+      colour(source.device_, is_reduced(source.frame_) ? 1 : source.samples()) {
+    if (!is_reduced(source.frame_)) passes.emplace(source);
+}
 
 FragmentSource::FragmentSource(const cellist::Device& device, const Frame& frame)
     : device_(device),
@@ -109,7 +117,7 @@ FragmentSource::FragmentSource(const cellist::Device& device, const Frame& frame
       transparent_(device, projection_, chosen(frame.scene, false)),
       materials_(device, frame.scene.materials),
       screen_(screen_of(frame, resolves_samples(frame.quality) ? samples_of(frame.quality) : 1)),
-      image_(device, frame.pixels()) {
+      image_(device, (is_reduced(frame) ? 2 : 1) * frame.pixels()) {
     if (needs_.opacities) opacities_.emplace(device, opacities_of(frame.scene));
     if (needs_.opaque) opaque_ = std::make_unique<Opaque>(*this);
     if (resolves_samples(frame.quality)) {
@@ -138,15 +146,21 @@ void FragmentSource::transform() { projection_.transform(); }
 
 void FragmentSource::prepare() {
     transparent_.bin();
-    if (!opaque_) return;
+    if (!opaque_ || !opaque_->passes) return;
     Opaque& o = *opaque_;
-    o.triangles.bin();
+    Opaque::Passes& passes = *opaque_->passes;
+    passes.triangles.bin();
     o.depth_bits.fill(infinity_bits);
-    o.owners.fill(no_owner);
-    o.triangles.draw(o.depth_pass, o.depth_bits);
-    o.triangles.draw(o.owner_pass, o.owners, o.depth_bits);
-    o.triangles.draw(o.colour_pass, o.owners, o.depth_bits, o.colour, constants_, materials_,
-                     geometry_.normals());
+    passes.owners.fill(no_owner);
+    passes.triangles.draw(passes.depth, o.depth_bits);
+    passes.triangles.draw(passes.owner, passes.owners, o.depth_bits);
+    passes.triangles.draw(passes.colour, passes.owners, o.depth_bits, o.colour, constants_,
+                          materials_, geometry_.normals());
+}
+
+void FragmentSource::set_slice(const cellist::Slice& slice) {
+    constants_.first_pixel = static_cast<cl_uint>(slice.first_cell);
+    constants_.end_pixel = static_cast<cl_uint>(slice.first_cell + slice.cells);
 }
 
 void FragmentSource::finish() {
@@ -156,7 +170,7 @@ void FragmentSource::finish() {
 }
 
 bool FragmentSource::complete() {
-    const bool opaque = !opaque_ || opaque_->triangles.complete();
+    const bool opaque = !opaque_ || !opaque_->passes || opaque_->passes->triangles.complete();
     return transparent_.complete() && opaque;
 }
 
@@ -188,10 +202,12 @@ std::uint64_t FragmentSource::device_bytes() const {
                           image_.size() * sizeof(cl_float4);
     if (opacities_) bytes += opacities_->size() * sizeof(cl_float);
     if (sample_image_) bytes += sample_image_->size() * sizeof(cl_float4);
-    if (opaque_)
-        bytes += opaque_->triangles.device_bytes() + opaque_->depth_bits.size() * sizeof(cl_uint) +
-                 opaque_->owners.size() * sizeof(cl_uint) +
-                 opaque_->colour.size() * sizeof(cl_float4);
+    if (!opaque_) return bytes;
+    bytes +=
+        opaque_->depth_bits.size() * sizeof(cl_uint) + opaque_->colour.size() * sizeof(cl_float4);
+    if (opaque_->passes)
+        bytes += opaque_->passes->triangles.device_bytes() +
+                 opaque_->passes->owners.size() * sizeof(cl_uint);
     return bytes;
 }
 

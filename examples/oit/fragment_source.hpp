@@ -35,12 +35,16 @@ public:
     /// Projects the vertices. Does not block.
     void transform();
 
-    /// Divides large triangles into blocks and draws the opaque surfaces. Does not block.
+    /// Divides large triangles into blocks and draws the opaque surfaces. Does not block. With
+    /// Quality::reduce, the opaque depths are the caller's to write.
     void prepare();
 
     /// Whether everything was drawn since prepare(). If not, there is room for it now, and the frame
     /// begins again there. Blocks.
     [[nodiscard]] bool complete();
+
+    /// From now on, kernels over the pixels blend those of the slice alone: see Frame::memory_bytes.
+    void set_slice(const cellist::Slice& slice);
 
     /// The kernels of a pass: `source` defines OIT_TARGET, OIT_TARGET_PASS and oit_store (see
     /// surface.clh), where OIT_PASS is defined. `uses` are containers and types, as in cellist::Kernel.
@@ -112,20 +116,32 @@ public:
     }
     /// Width, height and eyes: a cell for each pixel.
     [[nodiscard]] cellist::Shape shape() const;
-    /// The linear image, eye by eye, row by row from the top.
+    /// The linear image, eye by eye, row by row from the top. With Quality::reduce, two vectors a pixel:
+    /// what the transparent surfaces add, and the part of the light behind that they let pass.
     [[nodiscard]] const cellist::Buffer<cl_float4>& image() const { return image_; }
+    /// The least depth of the opaque surfaces in each sample, as the bits of floats; null where there are
+    /// none.
+    [[nodiscard]] const cellist::Buffer<cl_uint>* depth_bits() const {
+        return opaque_ ? &opaque_->depth_bits : nullptr;
+    }
     /// Geometry, projection, opaque surfaces and image.
     [[nodiscard]] std::uint64_t device_bytes() const;
 
 private:
     // What only a frame with opaque surfaces has.
     struct Opaque {
-        raster::Triangles triangles;
-        raster::Pass depth_pass;
-        raster::Pass owner_pass;
-        raster::Pass colour_pass;
+        // Without Quality::reduce.
+        struct Passes {
+            raster::Triangles triangles;
+            raster::Pass depth;
+            raster::Pass owner;
+            raster::Pass colour;
+            cellist::Buffer<cl_uint> owners;
+
+            explicit Passes(const FragmentSource& source);
+        };
+        std::optional<Passes> passes;
         cellist::Buffer<cl_uint> depth_bits;  ///< of each sample
-        cellist::Buffer<cl_uint> owners;
         cellist::Buffer<cl_float4> colour;
 
         explicit Opaque(const FragmentSource& source);

@@ -35,6 +35,9 @@ struct Quality {
     std::optional<std::uint32_t> layers = {};
     /// Blending ends where no more than this part of the light passes.
     float epsilon = 0;
+    /// Transparent surfaces are drawn with as many times fewer pixels a side, 1, 2 or 4, and enlarged
+    /// along the edges of the opaque ones: see reduction.hpp.
+    int reduce = 1;
     /// What the method is compiled for, of MethodInfo::sizes; none means its default.
     std::optional<std::uint32_t> size = {};
 };
@@ -46,6 +49,8 @@ struct Frame {
     double time = 0;                  ///< in seconds
     Quality quality = {};
     std::optional<BlendFunction> blend_function = {};  ///< of Blend::user
+    /// The most that a method may keep on the device. Lists are built and blended in slices then.
+    std::optional<std::uint64_t> memory_bytes = {};
 
     [[nodiscard]] int width() const { return views.front().width; }
     [[nodiscard]] int height() const { return views.front().height; }

@@ -2,6 +2,7 @@
 
 #include <bit>
 
+#include "list_slices.hpp"
 #include "oit_kernels.hpp"
 
 namespace oit {
@@ -26,6 +27,15 @@ ListReader nearest_reader(std::uint32_t nearest) {
     return blending_reader("#define OIT_NEAREST " + std::to_string(nearest) + "\n");
 }
 
+bool needs_sorting(const Quality& quality, const std::optional<ListReader>& reader) {
+    return reader || !picks_nearest(quality);
+}
+
+ListReader reader_of(const Quality& quality, const std::optional<ListReader>& reader) {
+    if (reader) return *reader;
+    return needs_sorting(quality, reader) ? blending_reader({}) : nearest_reader(*quality.layers);
+}
+
 // The device is waited for where the length of the lists is not known: in the first frame, and in others that
 // have more fragments than fit. All further ones are enqueued at once, into a pool with room for
 // somewhat more fragments than the first had.
@@ -40,11 +50,9 @@ public:
           pass_(source.pass(kernels::lists_cl, "lists.cl", *fragments_)),
           longer_(source.device(), 1) {
         const Quality& quality = source.frame().quality;
-        sorts_ = reader || !picks_nearest(quality);
+        sorts_ = needs_sorting(quality, reader);
         may_sort_on_the_way_ = !reader && sorts_;
-        reader_.emplace(kernel_of(reader   ? *reader
-                                  : sorts_ ? blending_reader({})
-                                           : nearest_reader(*quality.layers)));
+        reader_.emplace(kernel_of(reader_of(quality, reader)));
     }
 
     void store() override {
@@ -141,6 +149,10 @@ private:
 std::unique_ptr<Method> make_list_method(FragmentSource& source,
                                          const cellist::ListsOptions& options,
                                          std::optional<ListReader> reader) {
+    const Quality& quality = source.frame().quality;
+    if (source.frame().memory_bytes && options.overflow == cellist::Overflow::grow)
+        return make_list_slices(source, options, reader_of(quality, reader),
+                                needs_sorting(quality, reader));
     return with_node_type(source.layout().words,
                           [&]<class Node>(const Node*) -> std::unique_ptr<Method> {
                               return std::make_unique<ListMethod<Node>>(source, options, reader);

@@ -119,6 +119,7 @@ void write(oit::Report& report, const oit::Frame& frame, const oit::Renderer& re
     support::write_png(options.out, oit::side_by_side(image, frame), oit::picture_width(frame),
                        frame.height());
     report.lengths = renderer.method().lengths();
+    report.slices = renderer.method().slices();
     report.method_bytes = renderer.method().device_bytes();
     report.device_bytes = renderer.device_bytes();
     if (options.reference) report.comparison = compare_with_reference(frame, renderer, image);
@@ -137,6 +138,7 @@ int run(const oit::Options& options) {
     if (options.opaque_floor) oit::add_floor(scene);
     describe(report, scene, device);
     oit::Frame frame = oit::make_frame(scene, options);
+    frame.memory_bytes = options.memory_bytes;
     if (!options.budget) {
         oit::Renderer renderer(device, frame, oit::method_named(options.method));
         draw_with_method(report, renderer, frame);

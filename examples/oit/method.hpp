@@ -40,6 +40,8 @@ public:
     /// What the method keeps on the device, beside what the source has.
     [[nodiscard]] virtual std::uint64_t device_bytes() const = 0;
 
+    /// Parts of the image that the last frame was built in, one after the other.
+    [[nodiscard]] virtual std::uint32_t slices() const { return 1; }
     /// Fragments in each pixel, where the method has all of them. Blocks.
     [[nodiscard]] virtual std::optional<cellist::Lengths> lengths() const { return {}; }
     /// Their depths, for comparisons. Blocks.

@@ -122,6 +122,8 @@ std::string defines_of(const Frame& frame, const Needs& needs) {
         text += "#define OIT_PER_SAMPLE\n";
     if (quality.depth_range) text += "#define OIT_DEPTH_RANGE\n";
     if (quality.epsilon > 0) text += "#define OIT_EARLY_END\n";
+    if (quality.reduce > 1) text += "#define OIT_REDUCED\n";
+    if (frame.memory_bytes) text += "#define OIT_SLICES\n";
     if (quality.layers) text += define("OIT_LAYERS", *quality.layers);
     return text;
 }

@@ -1,6 +1,7 @@
 #include "node_layout.hpp"
 
 #include <bit>
+#include <cmath>
 #include <vector>
 
 namespace oit {
@@ -64,11 +65,20 @@ std::uint32_t depth_bits(NodeFormat format) {
     return format == NodeFormat::rgb565_d16 ? 16 : 0;
 }
 
+// The greatest power of 2, up to the 0th, that takes the colours of a frame into the range of half.
+int half_exponent(float colour_max) {
+    constexpr float half_max = 65504;
+    return colour_max <= half_max ? 0
+                                  : static_cast<int>(std::floor(std::log2(half_max / colour_max)));
+}
+
 }  // namespace
 
 NodeLayout node_layout(const Quality& quality, const Needs& needs) {
     Layouter layouter(base_of(quality.format));
     NodeLayout layout{.format = quality.format, .depth_scale = quality.depth_scale};
+    if (quality.format == NodeFormat::rgba16f)
+        layout.half_exponent = half_exponent(needs.colour_max);
     if (quality.samples > 1)
         layout.coverage = layouter.place(static_cast<std::uint32_t>(quality.samples));
     if (needs.alpha_varies) layout.alpha = layouter.place(layouter.alpha_bits());
@@ -86,7 +96,8 @@ std::string defines_of(const NodeLayout& layout) {
             text += "#define OIT_COLOUR_FLOAT\n";
             break;
         case NodeFormat::rgba16f:
-            text += "#define OIT_COLOUR_HALF\n";
+            text += "#define OIT_COLOUR_HALF\n#define OIT_HALF_SCALE 0x1p" +
+                    std::to_string(layout.half_exponent) + "f\n";
             break;
         case NodeFormat::rgb565_d16:
             text += "#define OIT_COLOUR_565\n";

@@ -57,6 +57,7 @@ struct NodeLayout {
     NodeFormat format = NodeFormat::float32;
     DepthScale depth_scale = DepthScale::linear;
     std::uint32_t words = 0;
+    int half_exponent = 0;    ///< halves hold colours times 2 to this power, 0 or less
     NodeField alpha = {};     ///< a float, a half, or 8 bits
     NodeField coverage = {};  ///< a bit for each sample
     NodeField blend = {};     ///< Blend; 6 where a surface is left

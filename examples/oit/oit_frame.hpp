@@ -14,7 +14,10 @@ struct OitFrame {
     cl_float greatest_depth;
     cl_float colour_max;  ///< of fragments: what quantised colours end at
     cl_float epsilon;     ///< blending ends where no more than this part of the light passes
+    cl_uint first_pixel;  ///< of those that are blended at once, where memory is bounded
+    cl_uint end_pixel;
 };
-CELLIST_STRUCT(OitFrame, look, alpha, least_depth, greatest_depth, colour_max, epsilon);
+CELLIST_STRUCT(OitFrame, look, alpha, least_depth, greatest_depth, colour_max, epsilon, first_pixel,
+               end_pixel);
 
 }  // namespace oit

@@ -1,6 +1,8 @@
 #include "options.hpp"
 
 #include <charconv>
+#include <string_view>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -40,13 +42,39 @@ void read_format(const std::string& text, Options& options) {
     refuse("--format", text, "one of " + names);
 }
 
+void read_reduce(const std::string& text, Options& options) {
+    if (text != "1" && text != "2" && text != "4") refuse("--reduce", text, "1, 2 or 4");
+    options.quality.reduce = text.front() - '0';
+    if (options.quality.reduce > 1 && options.quality.samples > 1)
+        throw support::InputError("--reduce draws one sample a pixel: leave out --samples");
+}
+
+// A number of bytes, or of a unit of them.
+void read_memory(const std::string& text, Options& options) {
+    if (text.empty()) return;
+    constexpr std::pair<std::string_view, int> units[] = {
+        {"KiB", 10}, {"MiB", 20}, {"GiB", 30}, {"", 0}};
+    for (const auto& [unit, shift] : units) {
+        if (!std::string_view(text).ends_with(unit)) continue;
+        const char* const number_end = text.data() + text.size() - unit.size();
+        std::uint64_t number = 0;
+        const auto [end, error] = std::from_chars(text.data(), number_end, number);
+        if (error != std::errc() || end != number_end || number == 0 ||
+            number > ~std::uint64_t{0} >> shift)
+            break;
+        options.memory_bytes = number << shift;
+        return;
+    }
+    refuse("--memory", text, "a whole number of bytes, KiB, MiB or GiB, such as 64MiB");
+}
+
 }  // namespace
 
 Options parse_options(int count, const char* const* arguments) {
     Options options;
     std::string method = options.method, layers = "all", epsilon = "0", format = "float", budget,
-                check_every = "1", until, turn = "0", out = options.out.string(), json,
-                frames = "5";
+                check_every = "1", until, reduce = "1", memory, turn = "0",
+                out = options.out.string(), json, frames = "5";
     CLI::App app{"Draws a mesh or a scene with order-independent transparency.", "cellist-oit"};
     const auto add = [&](const char* name, std::string& value, const char* what, const char* type) {
         add_option(app, name, value, what, type);
@@ -57,6 +85,11 @@ Options parse_options(int count, const char* const* arguments) {
     add("--epsilon", epsilon, "stop blending where no more than this part of the light passes",
         "E");
     add("--format", format, "colour and depth of fragments", "F");
+    add("--reduce", reduce,
+        "draw transparent surfaces with 2 or 4 times fewer pixels a side, and enlarge them", "N");
+    add("--memory", memory,
+        "what the method may take on the device, such as 64MiB; lists are drawn in slices",
+        "BYTES");
     add("--budget", budget, "choose method and setting: PSNR at least, or largest error at most",
         "40dB|1/255");
     add("--check-every", check_every, "of the frames that change, check each N-th for the budget",
@@ -83,6 +116,10 @@ Options parse_options(int count, const char* const* arguments) {
             if (app.count(chosen) > 0)
                 throw support::InputError("--budget chooses what " + std::string(chosen) +
                                           " sets: leave one of them out");
+        for (const char* unknown : {"--reduce", "--memory"})
+            if (app.count(unknown) > 0)
+                throw support::InputError("--budget compares settings without " +
+                                          std::string(unknown) + ": leave one of them out");
     }
     options.check_every = static_cast<std::uint32_t>(
         support::read_number("--check-every", check_every, 1, 1'000'000));
@@ -93,6 +130,8 @@ Options parse_options(int count, const char* const* arguments) {
     read_method(method, options);
     read_layers(layers, options);
     read_format(format, options);
+    read_reduce(reduce, options);
+    read_memory(memory, options);
     options.quality.epsilon =
         static_cast<float>(read_between("--epsilon", epsilon, 0, 1, "a number from 0 to 1"));
     options.frames =

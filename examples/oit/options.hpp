@@ -13,10 +13,11 @@ namespace oit {
 /// What the command line asks for.
 struct Options : FrameOptions {
     std::string method = "linked";
-    std::optional<Budget> budget = {};  ///< chooses method and setting
-    std::uint32_t check_every = 1;      ///< of the frames that change, within a budget
-    std::optional<double> until = {};   ///< the last frame's time; the first is at `time`
-    double turn_degrees = 0;            ///< from the first frame to the last
+    std::optional<std::uint64_t> memory_bytes = {};  ///< that the method may take
+    std::optional<Budget> budget = {};               ///< chooses method and setting
+    std::uint32_t check_every = 1;                   ///< of the frames that change, within a budget
+    std::optional<double> until = {};  ///< the last frame's time; the first is at `time`
+    double turn_degrees = 0;           ///< from the first frame to the last
     bool reference = false;
     std::filesystem::path out = "oit.png";
     std::filesystem::path json = {};

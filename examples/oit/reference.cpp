@@ -5,6 +5,7 @@
 #include <limits>
 #include <tuple>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "input_error.hpp"
@@ -20,10 +21,13 @@ using glm::dvec3;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Whether the order of two fragments at nearly the same depth matters. A medium of no thickness
-// does nothing, and sums and products can be taken in any order.
+// Whether the order of two fragments at nearly the same depth matters, where both are blended. A medium of no thickness
+// does nothing, sums and products can be taken in any order, and two surfaces that cover change the
+// picture by no more than the difference of what they add.
 bool order_matters(const ReferenceFragment& a, const ReferenceFragment& b) {
     if (a.blend == Blend::absorb || b.blend == Blend::absorb) return false;
+    constexpr double visible = 1e-7;
+    if (a.blend == Blend::over && b.blend == Blend::over) return swap_error(a, b) > visible;
     return a.blend != b.blend || (a.blend != Blend::additive && a.blend != Blend::multiplicative);
 }
 
@@ -230,7 +234,7 @@ private:
         for (std::size_t i = 0; i < layers; ++i)
             for (std::size_t j = i + 1; j < list.size() && too_close(list[i].depth, list[j].depth);
                  ++j)
-                if (order_matters(list[i], list[j])) reference_.ambiguous[p] = true;
+                if (j >= layers || order_matters(list[i], list[j])) reference_.ambiguous[p] = true;
 
         std::vector<ReferenceLight> lights(
             samples_, ReferenceLight(glm::length(shading.ray(x, y)), options_));
@@ -267,6 +271,11 @@ private:
 };
 
 }  // namespace
+
+double swap_error(const ReferenceFragment& a, const ReferenceFragment& b) {
+    const dvec3 difference = glm::abs(a.colour - b.colour);
+    return a.alpha * b.alpha * std::max({difference.x, difference.y, difference.z});
+}
 
 std::uint64_t Reference::most_layers() const {
     std::uint64_t most = 0;

@@ -43,6 +43,10 @@ struct ReferenceOptions {
         blend = {};
 };
 
+/// How much a pixel changes, at most, if two surfaces of Blend::over that follow one another change places:
+/// the product of their opacities and the difference of their colours.
+[[nodiscard]] double swap_error(const ReferenceFragment& a, const ReferenceFragment& b);
+
 /// Draws a frame on the CPU: snapped geometry as on the device, everything else in double
 /// precision, exactly sorted. All fragments of Quality::layers are blended, whatever epsilon and
 /// node format are. Throws InputError where a user's function blends on the device and none is given

@@ -14,19 +14,42 @@ std::unique_ptr<Method> make_method(FragmentSource& source, const MethodInfo& in
     return info.make(source);
 }
 
+void check_memory(const Method& method, const std::optional<std::uint64_t>& budget) {
+    if (budget && method.device_bytes() > *budget)
+        throw support::InputError(
+            "the method takes " + std::to_string(method.device_bytes()) +
+            " bytes, over the budget of " + std::to_string(*budget) +
+            ": raise it to that, or take a method with lists, which are drawn in slices");
+}
+
+std::unique_ptr<Reduction> make_reduction(const cellist::Device& device, const Frame& frame) {
+    return frame.quality.reduce > 1 ? std::make_unique<Reduction>(device, frame) : nullptr;
+}
+
 }  // namespace
 
 Renderer::Renderer(const cellist::Device& device, const Frame& frame, const MethodInfo& method)
-    : device_(device), source_(device, frame), method_(make_method(source_, method)) {}
+    : device_(device),
+      reduction_(make_reduction(device, frame)),
+      source_(device, reduction_ ? reduction_->reduced() : frame),
+      method_(make_method(source_, method)) {}
+
+void Renderer::transform() {
+    if (reduction_) reduction_->transform();
+    source_.transform();
+}
 
 void Renderer::store() {
+    if (reduction_) reduction_->prepare(source_);
     source_.prepare();
     method_->store();
+    check_memory(*method_, source_.frame().memory_bytes);
 }
 
 void Renderer::resolve() {
     method_->resolve();
     source_.finish();
+    if (reduction_) reduction_->finish(source_);
 }
 
 bool Renderer::complete() {
@@ -37,7 +60,7 @@ bool Renderer::complete() {
 double Renderer::draw() {
     device_.finish();
     const support::Stopwatch stopwatch;
-    source_.transform();
+    transform();
     do {
         store();
         resolve();
@@ -47,11 +70,13 @@ double Renderer::draw() {
 }
 
 double Renderer::draw_at(double time) {
+    if (reduction_) reduction_->move_to(time);
     source_.move_to(time);
     return draw();
 }
 
 double Renderer::draw_changed() {
+    if (reduction_) reduction_->follow();
     source_.follow();
     return draw();
 }
@@ -65,7 +90,7 @@ PassTimes Renderer::draw_by_pass() {
         device_.finish();
         times.*pass = stopwatch.ms();
     };
-    measure(&PassTimes::transform_ms, [&] { source_.transform(); });
+    measure(&PassTimes::transform_ms, [&] { transform(); });
     do {
         measure(&PassTimes::raster_insert_ms, [&] { store(); });
         measure(&PassTimes::sort_blend_ms, [&] { resolve(); });

@@ -8,6 +8,7 @@
 
 #include "fragment_source.hpp"
 #include "method.hpp"
+#include "reduction.hpp"
 
 namespace oit {
 
@@ -27,7 +28,8 @@ public:
     Renderer(const cellist::Device& device, const Frame& frame,
              const MethodInfo& method = method_named("linked"));
 
-    /// Draws once, and blocks until the image is there: milliseconds from clearing to the image.
+    /// Draws once, and blocks until the image is there: milliseconds from clearing to the image. Throws
+    /// InputError where the method needs more than Frame::memory_bytes.
     double draw();
     /// The same at another time of the scene, in seconds.
     double draw_at(double time);
@@ -38,23 +40,28 @@ public:
     double draw_changed();
 
     /// The linear image, eye by eye, row by row from the top.
-    [[nodiscard]] std::vector<cl_float4> image() const { return source_.image().download(); }
+    [[nodiscard]] std::vector<cl_float4> image() const { return picture().download(); }
     /// The same on the device.
-    [[nodiscard]] const cellist::Buffer<cl_float4>& picture() const { return source_.image(); }
+    [[nodiscard]] const cellist::Buffer<cl_float4>& picture() const {
+        return reduction_ ? reduction_->image() : source_.image();
+    }
     [[nodiscard]] const Method& method() const { return *method_; }
     [[nodiscard]] const Needs& needs() const { return source_.needs(); }
     [[nodiscard]] const NodeLayout& layout() const { return source_.layout(); }
     /// Everything that the renderer holds on the device.
     [[nodiscard]] std::uint64_t device_bytes() const {
-        return source_.device_bytes() + method_->device_bytes();
+        return source_.device_bytes() + method_->device_bytes() +
+               (reduction_ ? reduction_->device_bytes() : 0);
     }
 
 private:
+    void transform();
     void store();
     void resolve();
     [[nodiscard]] bool complete();
 
     const cellist::Device& device_;
+    std::unique_ptr<Reduction> reduction_;  ///< where Quality::reduce asks for it
     FragmentSource source_;
     std::unique_ptr<Method> method_;
 };

@@ -71,6 +71,9 @@ void print(const Report& report, std::ostream& out) {
     line("method") << method_text({&method_named(options.method), options.quality}) << ", nodes of "
                    << report.node_bytes << " bytes, " << options.quality.samples
                    << (options.quality.samples == 1 ? " sample" : " samples") << " a pixel\n";
+    if (options.quality.reduce > 1)
+        line("reduced") << "transparent surfaces drawn with " << options.quality.reduce
+                        << " times fewer pixels a side\n";
     line("triangles") << grouped(report.triangles) << dropped_text(report.drops) << '\n';
     if (report.lengths) {
         line("fragments") << grouped(report.lengths->total) << '\n';
@@ -79,6 +82,9 @@ void print(const Report& report, std::ostream& out) {
     }
     line("memory") << megabytes(report.method_bytes) << " MB of lists, "
                    << megabytes(report.device_bytes) << " MB in all\n";
+    if (options.memory_bytes)
+        line("slices") << report.slices << ", " << grouped(report.method_bytes) << " of "
+                       << grouped(*options.memory_bytes) << " bytes used\n";
     line("transform") << fixed(report.passes.transform_ms, 2) << " ms\n";
     line("raster + insert") << fixed(report.passes.raster_insert_ms, 2) << " ms\n";
     line("sort + blend") << fixed(report.passes.sort_blend_ms, 2) << " ms\n";
@@ -124,6 +130,10 @@ void write_json(const Report& report, const std::filesystem::path& path) {
     json["samples"] = options.quality.samples;
     json["node_bytes"] = report.node_bytes;
     json["pool_bytes"] = report.method_bytes;
+    json["reduce"] = options.quality.reduce;
+    json["memory_bytes"] = nullptr;
+    if (options.memory_bytes) json["memory_bytes"] = *options.memory_bytes;
+    json["slices"] = report.slices;
     json["pixels_nan"] = report.pixels_nan;
     json["device_bytes"] = report.device_bytes;
     json["frames"] = options.frames;

@@ -26,6 +26,7 @@ struct Report {
     std::uint64_t node_bytes = 0;             ///< of a fragment, without links
     std::uint64_t method_bytes = 0;           ///< what the method keeps on the device
     std::uint64_t device_bytes = 0;
+    std::uint32_t slices = 1;  ///< that the frame was built in
     std::uint64_t pixels_nan = 0;
     float colour_max = 1;  ///< brightest channel of a fragment, at most
     double frame_ms = 0;   ///< from clearing to the image on the device, median

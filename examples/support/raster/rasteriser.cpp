@@ -285,16 +285,18 @@ void Triangles::bin() {
                        capacity_of(blocks_), p.views_, p.instances_, p.vertices_,
                        p.geometry_.positions(), p.geometry_.indices(), batches_);
     counted_ = counts_.download_async();
+    complete_.reset();
 }
 
 bool Triangles::complete() {
+    if (complete_) return *complete_;
     const RasterCounts counts = counted_.get().front();
-    const bool complete = counts.triangles <= queue_.size() && counts.blocks <= blocks_.size();
+    complete_ = counts.triangles <= queue_.size() && counts.blocks <= blocks_.size();
     if (counts.triangles > queue_.size())
         queue_ = cellist::Buffer<RasterTriangle>(device_, counts.triangles);
     if (counts.blocks > blocks_.size())
         blocks_ = cellist::Buffer<RasterBlock>(device_, counts.blocks);
-    return complete;
+    return *complete_;
 }
 
 cellist::Range Triangles::triangles() const { return batches_range(batches_.size()); }

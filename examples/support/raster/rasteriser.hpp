@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -176,6 +177,7 @@ private:
     cellist::Buffer<RasterBlock> blocks_;
     cellist::Buffer<RasterCounts> counts_;
     cellist::Pending<std::vector<RasterCounts>> counted_;
+    std::optional<bool> complete_;  ///< since bin(), once it is known
 };
 
 }  // namespace raster
