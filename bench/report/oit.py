@@ -54,6 +54,11 @@ def cases(section, all_results):
     return list(dict.fromkeys(f["case"] for results in all_results for f in figures(results, section)))
 
 
+def three_digits(value):
+    """As people read it: 0.215, 21.5, 2,150."""
+    return f"{value:,.0f}" if value >= 100 else f"{value:.3g}"
+
+
 def frames_per_second(figure):
     return 1e3 / figure["ms"]
 
@@ -93,7 +98,7 @@ def goals(results):
     rows = []
     for figure in figures(results, "frame_times"):
         rate = frames_per_second(figure)
-        text = f"{rate:,.4g} frames/s, {figure['ms']:.3g} ms"
+        text = f"{three_digits(rate)} frames/s, {three_digits(figure['ms'])} ms"
         rows.append(_at_least("frame_times", figure["case"], text, rate,
                               FRAMES_PER_SECOND[figure["case"]].get(kind)))
     for case in cases("exact_methods", [results]):
@@ -110,7 +115,8 @@ def goals(results):
         rows.append(_goal("fewer_layers", f"8 of {figure['most_layers']}, {figure['case']}", text,
                           figure["speed_up"]))
     for figure in figures(results, "plain_cpp"):
-        text = f"{figure['ratio']:.2f}: {figure['plain_cpp']['ms']:.3g} ms / {figure['linked']['ms']:.3g} ms"
+        text = (f"{figure['ratio']:.2f}: {three_digits(figure['plain_cpp']['ms'])} ms / "
+                f"{three_digits(figure['linked']['ms'])} ms")
         rows.append(_at_least("plain_cpp", figure["case"], text, figure["ratio"],
                               TIMES_PLAIN_CPP.get(figure["case"], {}).get(kind)))
     for figure in figures(results, "accuracy"):

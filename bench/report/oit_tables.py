@@ -34,6 +34,10 @@ def _only(found):
     return found[0] if found else None
 
 
+def _ms(times):
+    return f"{oit.three_digits(times['ms'])} ms"
+
+
 def conditions(all_results):
     """The runs that all other tables are of."""
     return _table(["device", "driver", "commit", "note"],
@@ -47,10 +51,11 @@ def frame_times(all_results):
         asked = oit.FRAMES_PER_SECOND[case]
         found = [_only(oit.figures(results, "frame_times", case=case)) for results in all_results]
         first = next(figure for figure in found if figure)
-        title = (f"{_CASE_TITLES.get(case, case)}, {first['width']}×{first['height']}, {first['triangles']:,} triangles, "
-                 f"{first['fragments']:,} fragments, up to {first['most_layers']} in a pixel")
+        title = (f"{_CASE_TITLES.get(case, case)}, {first['width']}×{first['height']}, "
+                 f"{first['triangles']:,} triangles, {first['fragments']:,} fragments, "
+                 f"up to {first['most_layers']} in a pixel")
         rows.append([title, f"{asked['gpu']:,}", f"{asked['cpu']:,}"] +
-                    [f"{figure['ms']:.3g} ms, {oit.frames_per_second(figure):,.3g} a second" if figure else "–"
+                    [f"{_ms(figure)}, {oit.three_digits(oit.frames_per_second(figure))} a second" if figure else "–"
                      for figure in found])
     return _table(head, rows)
 
@@ -62,7 +67,7 @@ def exact_methods(all_results):
     rows = []
     for method in methods:
         found = [_only(oit.figures(results, "exact_methods", case=case, method=method)) for results, case in columns]
-        rows.append([f"`{method}`"] + [f"{f['times_linked']:.2f}, {f['ms']:.3g} ms" if f else "–" for f in found])
+        rows.append([f"`{method}`"] + [f"{f['times_linked']:.2f}, {_ms(f)}" if f else "–" for f in found])
     return _table(["times as long as `linked`"] + [f"{case}, {device_title(r)}" for r, case in columns], rows)
 
 
@@ -96,8 +101,8 @@ def plain_cpp(all_results):
         row = [case]
         for results in all_results:
             figure = _only(oit.figures(results, "plain_cpp", case=case))
-            row += [f"{figure['linked']['ms']:.3g} ms", f"{figure['plain_cpp']['ms']:.3g} ms",
-                    f"{figure['ratio']:.2f}"] if figure else ["–"] * 3
+            row += [_ms(figure["linked"]), _ms(figure["plain_cpp"]), f"{figure['ratio']:.2f}"] if figure else \
+                ["–"] * 3
         rows.append(row)
     return _table(head, rows)
 

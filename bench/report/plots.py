@@ -53,7 +53,7 @@ class _Panel:
             ticks = [(math.log10(step), f"{step:,.10g}") for step in steps if first <= step <= last]
             self.low, self.high = math.log10(first), math.log10(last)
         else:
-            step = next(step for step in (0.25, 0.5, 1, 2, 5, 10, 20, 50, 100) if max(values) <= 20 * step)
+            step = next(step for step in (0.25, 0.5, 1, 2, 5, 10, 20, 50, 100) if max(values) <= 15 * step)
             self.low, self.high = 0, max(1.25, step * math.ceil(max(values) / step))
             ticks = [(i * step, f"{i * step:g}") for i in range(round(self.high / step) + 1)]
         for position, label in ticks:
@@ -62,7 +62,7 @@ class _Panel:
         for bit in self.bits:
             x = self.x_of(2 ** bit)
             self.parts.append(_line(x, self.TOP, x, self.TOP + self.HEIGHT, "#eee"))
-            if bit % 2 == 0:
+            if bit % 2 == 0 or len(self.bits) < 9:
                 self.parts.append(_text(x, self.TOP + self.HEIGHT + 18, number(2 ** bit), "middle"))
         self.parts.append(_text(self.x + self.WIDTH / 2, self.TOP + self.HEIGHT + 36, across, "middle"))
         for index, (label, line, dashed) in enumerate(lines):

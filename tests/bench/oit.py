@@ -37,8 +37,8 @@ def write_meshes(folder):
 def run(folder, *options):
     """The results of a small run of scripts/bench-oit, and what it printed."""
     out = folder / "results.json"
-    done = subprocess.run([ROOT / "scripts/bench-oit", "--build", BUILD, "--json", out, "--git", "abc", "--frames", "1",
-                           *options], capture_output=True, text=True, check=False)
+    command = [ROOT / "scripts/bench-oit", "--build", BUILD, "--json", out, "--git", "abc", "--frames", "1"]
+    done = subprocess.run([*command, *options], capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise AssertionError(done.stdout + done.stderr)
     return json.loads(out.read_text(encoding="utf-8")), done.stdout
