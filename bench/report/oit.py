@@ -74,10 +74,10 @@ def unexplained(figure):
 
 
 def causes(figure):
-    """Of the pixels beyond 1/255, how many there are of each cause. Where another order of close layers
-    is not the cause, it is a layer or a surface close to an opaque one."""
+    """Of the pixels beyond 1/255, how many there are of each cause: close layers, whose order was proven to be
+    it, and what else is close, such as opaque surfaces."""
     order = figure["pixels_of_another_order"]
-    return {"order of layers": order, "close to an opaque surface": figure["pixels_explained"] - order,
+    return {"order of layers": order, "other close depths": figure["pixels_explained"] - order,
             "unexplained": unexplained(figure)}
 
 

@@ -130,7 +130,7 @@ class Goals(unittest.TestCase):
 
     def test_pixels_beyond_the_step_have_causes(self):
         table = oit_tables.accuracy([self.RESULTS])
-        self.assertIn("| 10: 9 order of layers, 1 close to an opaque surface |", table)
+        self.assertIn("| 10: 9 order of layers, 1 other close depths |", table)
         self.assertIn("| 2: 1 order of layers, 1 unexplained |", table)
 
     def test_all_budgets_are_to_be_met(self):

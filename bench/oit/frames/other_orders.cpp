@@ -39,7 +39,7 @@ glm::dvec3 light_of(Fragments fragments, const std::vector<std::size_t>& order,
     return sum / static_cast<double>(samples);
 }
 
-// The fragments by their rank among those that are close to each other: [first, end).
+// The fragments from `first` to before `end`, each close to the next.
 struct Group {
     std::size_t first, end;
 };
