@@ -15,8 +15,9 @@ namespace {
 
 using Fate = Candidate::Fate;
 
-// Packing makes no method faster by more than this, so slower methods are left out in every format.
-constexpr double family_margin = 1.6;
+// Other formats and sizes make a method faster by no more than packing does `linked`, times this.
+// So methods that are slower are left out in all of them.
+constexpr double family_margin = 1.2;
 // After two draws, a setting is out if it is slower by this; with more draws, by less.
 constexpr double first_margin = 1.3;
 constexpr int rounds = 3;
@@ -105,7 +106,8 @@ public:
         // the other settings of those that are fast enough.
         const Setting exact{&method_named("linked"), settings.front().quality};
         draw(exact, {});
-        choice_.exact_ms = contenders_.empty() ? best_ms_ : contenders_.front()->ms();
+        measure_pass();
+        choice_.exact_ms = family_ms_[exact.method->name];
         std::vector<Setting> leaders{exact}, others;
         for (const Setting& setting : settings)
             if (setting.method == leaders.back().method || setting.method == exact.method)
@@ -129,8 +131,10 @@ private:
     void consider(const Setting& setting) {
         const auto bound = setting.method->bound(choice_.scene, setting.quality);
         Candidate candidate{.setting = setting, .error = bound, .bounded = bound.has_value()};
+        // No picture can be told to be nearer to the truth than that which it is compared with.
+        if (!budget_.met_by(choice_.scene.exact)) candidate.fate = Fate::over_budget;
         // A bound of float nodes is what is left out, and little more.
-        if (bound && setting.quality.format == NodeFormat::float32 && !budget_.met_by(*bound))
+        else if (bound && setting.quality.format == NodeFormat::float32 && !budget_.met_by(*bound))
             candidate.fate = Fate::over_budget;
         else if (has_enough(setting))
             candidate.fate = Fate::not_needed;
@@ -149,8 +153,10 @@ private:
     }
 
     [[nodiscard]] bool is_predicted_slow(const Setting& setting) const {
+        // With fewer layers a method may be far faster than with all.
+        if (setting.quality.layers || setting.quality.epsilon > 0) return false;
         if (const auto family = family_ms_.find(setting.method->name); family != family_ms_.end())
-            return family->second > family_margin * best_ms_;
+            return family->second > family_margin * packing_gain_ * best_ms_;
         const auto passes =
             static_cast<double>(setting.method->passes(choice_.scene, setting.quality));
         return passes * part_of_pass * pass_ms_ > family_margin * best_ms_;
@@ -159,11 +165,12 @@ private:
     void draw(const Setting& setting, const std::optional<PictureError>& bound) {
         Candidate candidate{.setting = setting};
         std::unique_ptr<Contender> contender;
+        bool slower = false;
         try {
             contender = std::make_unique<Contender>(device_, frame_, candidate);
             contender->renderer.draw();  // builds the kernels' last variants and grows the pool
             contender->renderer.draw();
-            time(*contender);
+            slower = is_slower(*contender, first_margin);
         } catch (const std::exception& error) {
             const std::string message = error.what();
             candidate.fate = Fate::failed;
@@ -171,15 +178,16 @@ private:
             choice_.candidates.push_back(candidate);
             return;
         }
-        note(*contender);
-        if (is_out(*contender, first_margin)) return leave(*contender, Fate::slower);
+        if (slower) return leave(*contender, Fate::slower);
         compare(*contender, bound);
         const bool met = budget_.met_by(contender->errors.told);
         if (met) {
             ++met_[{setting.method->name, series_of(setting)}];
             contenders_.push_back(std::move(contender));
             update_best();
-            drop_slower(first_margin);
+            drop([&](Contender& other) {
+                return is_out(other, first_margin) && is_slower(other, first_margin);
+            });
             return;
         }
         leave(*contender, Fate::over_budget);
@@ -195,28 +203,46 @@ private:
         candidate.error = contender.errors.told;
     }
 
-    // By turns with the fastest so far: what else the machine does disturbs both, so the ratio of their
-    // times says more than either.
-    void time(Contender& contender) {
+    // Draws by turns with the fastest so far, and says whether it is slower by this. What else the
+    // machine does disturbs both, but not always alike: it is slower where its least time and that
+    // of these turns say so.
+    [[nodiscard]] bool is_slower(Contender& contender, double margin) {
+        Contender* leader = contenders_.empty() ? nullptr : contenders_.front().get();
         support::Least own, other;
         int draws = 3;
         for (int drawn = 0; drawn < draws; ++drawn) {
             own.add(contender.renderer.draw());
-            if (pass_ms_ == 0) pass_ms_ = contender.renderer.draw_by_pass().raster_insert_ms;
-            if (!contenders_.empty()) other.add(contenders_.front()->renderer.draw());
+            if (leader) other.add(leader->renderer.draw());
             draws = draws_of(own.ms(), 3);
-            choice_.draws += contenders_.empty() ? 1U : 2U;
+            choice_.draws += leader ? 2U : 1U;
         }
         contender.least.add(own.ms());
-        if (contenders_.empty()) return;
-        contender.least.add(contenders_.front()->ms() * own.ms() / other.ms());
-        contenders_.front()->least.add(other.ms());
+        if (!leader) {
+            note(contender, own.ms());
+            return false;
+        }
+        leader->least.add(other.ms());
+        best_ms_ = std::min(best_ms_, other.ms());
+        note(contender, std::min(own.ms(), best_ms_ * own.ms() / other.ms()));
+        return own.ms() > margin * other.ms() && is_out(contender, margin);
     }
 
-    void note(const Contender& contender) {
-        const auto [family, is_new] =
-            family_ms_.try_emplace(contender.candidate.setting.method->name, contender.ms());
-        family->second = std::min(family->second, contender.ms());
+    // Of the first setting.
+    void measure_pass() {
+        Contender* first = contenders_.empty() ? fallback_.get() : contenders_.front().get();
+        if (!first) return;
+        support::Least pass;
+        for (int i = 0; i < 3; ++i) pass.add(first->renderer.draw_by_pass().raster_insert_ms);
+        pass_ms_ = std::min(pass.ms(), first->ms());
+    }
+
+    // What the method takes at least, and what it gains from packing.
+    void note(const Contender& contender, double ms) {
+        const Setting& setting = contender.candidate.setting;
+        const auto [family, is_new] = family_ms_.try_emplace(setting.method->name, ms);
+        family->second = std::min(family->second, ms);
+        if (setting.method->name == "linked" && setting.quality.format != NodeFormat::float32)
+            packing_gain_ = std::max(packing_gain_, choice_.exact_ms / ms);
     }
 
     // The fastest comes first.
@@ -224,7 +250,6 @@ private:
         std::ranges::stable_sort(contenders_, {},
                                  [](const auto& contender) { return contender->ms(); });
         best_ms_ = contenders_.front()->ms();
-        for (const auto& contender : contenders_) note(*contender);
     }
 
     // ---- all that are left
@@ -239,16 +264,19 @@ private:
         choice_.candidates.push_back(contender.candidate);
     }
 
-    void drop_slower(double margin) {
+    void drop(const auto& is_slow) {
         std::erase_if(contenders_, [&](const std::unique_ptr<Contender>& contender) {
-            if (!is_out(*contender, margin)) return false;
+            if (!is_slow(*contender)) return false;
             leave(*contender, Fate::slower);
             return true;
         });
     }
 
     // Those that are left draw by turns, so that what else the machine does disturbs all alike.
+    // Times from before do not count: they were taken at other moments, and not equally often.
     void play_off() {
+        if (contenders_.size() < 2) return;
+        for (const auto& contender : contenders_) contender->least = {};
         for (int round = 0; round < rounds && contenders_.size() > 1; ++round) {
             const int draws = draws_of(best_ms_, 2 << round);
             for (int turn = 0; turn < draws; ++turn)
@@ -257,7 +285,8 @@ private:
                     ++choice_.draws;
                 }
             update_best();
-            drop_slower(1 + (first_margin - 1) / (2 << round));
+            const double margin = 1 + (first_margin - 1) / (2 << round);
+            drop([&](const Contender& contender) { return is_out(contender, margin); });
         }
     }
 
@@ -299,7 +328,8 @@ private:
     std::unique_ptr<Contender> fallback_;                 // the most accurate of the others
     std::unique_ptr<Contender> winner_;
     double best_ms_ = std::numeric_limits<double>::infinity();
-    double pass_ms_ = 0;  // to draw and store all fragments once
+    double packing_gain_ = 1;  // of `linked`: how many times as fast it gets
+    double pass_ms_ = 0;       // to draw and store all fragments once
     std::map<std::string_view, double> family_ms_;
     std::map<std::pair<std::string_view, Series>, std::size_t> met_;
 };

@@ -13,8 +13,8 @@ using nlohmann::ordered_json;
 
 void print_trial(const char* what, const Trial& trial, const Budget& budget, std::ostream& out) {
     out << "  " << std::left << std::setw(8) << what << std::setw(50) << text(trial.setting)
-        << std::right << std::setw(12) << budget.text_of(trial.errors.told) << std::setw(9)
-        << fixed(trial.times.median_ms, 2) << " ms";
+        << std::right << std::setw(12) << budget.text_of(trial.errors.told);
+    if (trial.times.runs > 0) out << std::setw(9) << fixed(trial.times.median_ms, 2) << " ms";
 }
 
 std::string verdict(const GridCase& grid_case, double most_cost) {

@@ -1,6 +1,7 @@
 // Does --budget choose well? Against all settings there are, on ten scenes and views.
 #include <algorithm>
 #include <iostream>
+#include <limits>
 #include <vector>
 
 #include <cellist/cellist.hpp>
@@ -38,7 +39,10 @@ oit::GridCase run_case(const cellist::Device& device, const oit::Frame& frame, o
     const oit::Trial* best = search.best(result.budget);
     if (best) result.best = *best;
     const oit::Trial* chosen = search.find(result.choice.setting);
-    if (best && chosen) time_both(search, *chosen, *best, result);
+    if (best && chosen)
+        time_both(search, *chosen, *best, result);
+    else if (best)
+        result.cost = std::numeric_limits<double>::infinity();
     return result;
 }
 

@@ -16,8 +16,8 @@
 
 namespace oit {
 
-/// The picture of a frame in double precision. Where the order of its layers is not told by depths as
-/// float, the picture that the device draws of all layers in float has an order that is as right.
+/// The picture of a frame in double precision. Where depths as float do not tell the order of its
+/// layers, the picture that the device draws of all layers in float has an order that is as right.
 class Truth {
 public:
     /// Draws both. Blocks.
@@ -52,13 +52,13 @@ struct Trial {
 
 /// All settings of a frame, drawn and measured, and the best of them for a budget.
 ///
-/// Settings draw by turns, so that what else the machine does disturbs all alike. One that takes far
-/// longer than all layers in float with the method `linked`, which keeps every budget that can be kept,
-/// is drawn twice only.
+/// Settings draw by turns, so that what else the machine does disturbs all alike. One that takes
+/// far longer than all layers in float with the method `linked`, which keeps every budget that can
+/// be kept, is drawn twice only.
 class Search {
 public:
-    /// Draws each setting `runs` times at least. Blocks. Refers to the device and the frame, which must
-    /// outlive it.
+    /// Draws each setting `runs` times at least, and keeps all renderers. Blocks. Refers to the
+    /// device and the frame, which must outlive it.
     Search(const cellist::Device& device, const Frame& frame, std::uint32_t runs);
     Search(const Search&) = delete;
     Search& operator=(const Search&) = delete;
@@ -67,10 +67,11 @@ public:
     [[nodiscard]] const Truth& truth() const { return truth_; }
     [[nodiscard]] const std::vector<Trial>& trials() const { return trials_; }
 
-    /// The cheapest setting within the budget: those that are nearly as cheap draw again, more often.
-    /// Nothing where there is none. Blocks.
+    /// The cheapest setting within the budget: those that are nearly as cheap draw again, more
+    /// often. Nothing where there is none. Blocks.
     [[nodiscard]] const Trial* best(const Budget& budget);
 
+    /// Nothing where the setting is not among those of the frame.
     [[nodiscard]] const Trial* find(const Setting& setting) const;
 
     /// The times of these settings, measured again by turns, more often. Blocks.
