@@ -182,13 +182,19 @@ kernel void cellist_sort_collect(CELLIST_LISTS(CELLIST_RECORD, lists), global co
     }
 }
 
-// Says that the first `stored` nodes of the pool are allocated, and no others; one work-item a shard.
+// Says that the first `stored` nodes of the pool are allocated, and no others; one work-item a shard, and one
+// a hand.
 kernel void cellist_sort_allocate(CELLIST_LISTS(CELLIST_RECORD, lists), uint stored) {
-    const uint shard = get_global_id(0);
-    if (shard >= 1u << lists_view.shard_bits) return;
+    const uint i = get_global_id(0);
+    const uint count = 1u << lists_view.shard_bits;
     cellist_view view = lists_view;
     view.capacity_nodes = stored;
-    lists_shards[shard].allocated = cellist_shard_nodes(view, shard);
+    if (i < count) lists_shards[i].allocated = cellist_shard_nodes(view, i);
+    if (i < lists_view.hands) {
+        volatile global cellist_hand* hand = &cellist_hands(lists_shards, view)[i];
+        hand->last = hand->node;
+        hand->end = hand->next;
+    }
 }
 
 #endif

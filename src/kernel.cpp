@@ -30,19 +30,26 @@ struct Parameter {
     std::size_t size = 0;  ///< in bytes; 0 if not known
 };
 
+/// What a device has, unless the build options define it.
+void add_switch(ProgramText& whole, const std::string& name, bool on) {
+    whole.add(
+        "#ifndef CELLIST_" + name + "\n#define CELLIST_" + name + (on ? " 1" : " 0") + "\n#endif",
+        "CELLIST_" + name);
+}
+
 ProgramText whole_source(const Source& source, const detail::Definitions& definitions,
-                         cl_uint modes, bool lanes) {
+                         cl_uint modes, const DeviceInfo& device) {
     bool uses_glm = false;
     const std::string text = detail::without_library_includes(source.text, uses_glm);
     detail::Definitions all = definitions;
     if (uses_glm) all.add(detail::glm_source());
     ProgramText whole;
     whole.add("#define CELLIST_MODES " + std::to_string(modes) + "u", "modes");
-    whole.add(std::string("#ifndef CELLIST_LANES\n#define CELLIST_LANES ") + (lanes ? "1" : "0") +
-                  "\n#endif",
-              "lanes");
+    add_switch(whole, "LANES", device.lanes);
+    add_switch(whole, "THREADS", device.threads);
     whole.add(kernels::view_h, "cellist/view.h");
     whole.add(kernels::lanes_clh, "cellist/lanes.clh");
+    whole.add(kernels::threads_clh, "cellist/threads.clh");
     whole.add(kernels::allocation_clh, "cellist/allocation.clh");
     whole.add(kernels::lists_clh, "cellist/lists.clh");
     whole.add(all.source(), "structs");
@@ -56,7 +63,7 @@ const cl::Program& build(detail::DeviceState& device, const Source& source,
     if (definitions.needs_fp64 && !device.info.fp64)
         throw Error("a struct has members of type double, which " + device.info.name +
                     " does not support");
-    const ProgramText whole = whole_source(source, definitions, modes, device.info.lanes);
+    const ProgramText whole = whole_source(source, definitions, modes, device.info);
     try {
         return device.program(whole.text(), "-cl-std=CL1.2 -cl-kernel-arg-info " + source.options);
     } catch (const OpenClError& error) {

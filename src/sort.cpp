@@ -184,7 +184,7 @@ void ListSorter::sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage)
     const ListStorage& storage = sort.storage;
     // Sound lists that are longer than the class are no more than this.
     const std::uint64_t most =
-        std::min<std::uint64_t>(sort.count, storage.capacity_nodes() / (tuning.slots + 1));
+        std::min<std::uint64_t>(sort.count, storage.pool_nodes() / (tuning.slots + 1));
     Memory& longer = cells_[stage % 2];
     if (longer.size_bytes() < most * sizeof(cl_uint))
         longer = Memory(device_, most, sizeof(cl_uint), "cells with long lists");
@@ -213,10 +213,9 @@ void ListSorter::sort_long(Sort& sort) {
     const auto count = static_cast<cl_uint>(sort.count);
     const cl::Buffer& cells = sort.cells->cl();
     const Memory longs(device_, count, sizeof(cellist_sort_long), "long lists");
-    const std::uint64_t owners_end = storage.capacity_nodes() / tuning.slots + count;
+    const std::uint64_t owners_end = storage.pool_nodes() / tuning.slots + count;
     const Memory owners(device_, owners_end, sizeof(cl_uint), "owners of chunks");
-    const std::uint64_t part_count =
-        sort.linked ? (storage.capacity_nodes() >> part_bits) + count : 0;
+    const std::uint64_t part_count = sort.linked ? (storage.pool_nodes() >> part_bits) + count : 0;
     const Memory parts(device_, part_count, sizeof(cl_uint2), "parts of lists");
     Memory places(device_, part_count, sizeof(cl_uint2), "places of parts of lists");
     const Range walks = Range::padded((part_count + tuning.lists - 1) / tuning.lists,
@@ -283,8 +282,8 @@ void ListSorter::adopt(Sort& sort) {
         throw Error("lists cannot be sorted: they have " + std::to_string(sort.state.nodes) +
                     " nodes instead of " + std::to_string(storage.stored()) +
                     " (Lists::validate() finds why); the lists are as they were");
-    if (storage.stored() < storage.capacity_nodes())
-        run_long(sort, "cellist_sort_allocate", Range::padded(1u << CELLIST_SHARD_BITS_MAX),
+    if (storage.stored() < storage.pool_nodes())
+        run_long(sort, "cellist_sort_allocate", Range::padded(storage.counters()),
                  arguments_of(storage, static_cast<cl_uint>(storage.stored())));
     storage.adopt_spare();
 }

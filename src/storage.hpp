@@ -77,7 +77,12 @@ public:
     /// Adds what CELLIST_LISTS declares.
     void add_to(Arguments& arguments) const;
 
+    /// Records that surely fit.
     [[nodiscard]] std::uint64_t capacity_nodes() const { return capacity_nodes_; }
+    /// Nodes there are; more than that where threads have some in their hands.
+    [[nodiscard]] std::uint64_t pool_nodes() const { return pool_nodes_with(capacity_nodes_); }
+    /// Elements of the counters, hands of threads included.
+    [[nodiscard]] std::uint64_t counters() const { return counters_with(capacity_nodes_); }
     /// Device memory of all buffers.
     [[nodiscard]] std::uint64_t bytes() const;
     [[nodiscard]] std::uint64_t cells() const { return shape_.cells(); }
@@ -121,6 +126,9 @@ protected:
     virtual void make_whole(bool without_pool) = 0;
 
     [[nodiscard]] const RecordType& record() const { return definitions_.records.back(); }
+    [[nodiscard]] std::uint64_t pool_nodes_with(std::uint64_t capacity_nodes) const;
+    /// Elements of the counters, hands and their owners included.
+    [[nodiscard]] std::uint64_t counters_with(std::uint64_t capacity_nodes) const;
     [[nodiscard]] std::uint64_t bytes_with(std::uint64_t capacity_nodes) const;
     /// Why the pool cannot have this capacity, if it cannot.
     [[nodiscard]] std::optional<std::string> refusal(std::uint64_t capacity_nodes) const;
@@ -138,7 +146,10 @@ protected:
     void grow_pool(std::uint64_t capacity_nodes, const BuildReport& report);
     /// Enqueues the reading of the counters: they are there when the event has completed.
     [[nodiscard]] cl::Event read_counters(Shards& shards) const;
-    [[nodiscard]] static Counters sum(const Shards& shards);
+    /// Of counters that are followed by so many hands. What is in these counts as free.
+    [[nodiscard]] static Counters sum(const Shards& shards, cl_uint hands = 0);
+    /// The hands of threads with a pool of this capacity: see threads.clh.
+    [[nodiscard]] virtual cl_uint hands_with(std::uint64_t) const { return 0; }
     /// Sets words of the heads, and clears all counters. Does not block.
     void clear_heads_and_counters(cl_uint head, std::uint64_t first_word, std::uint64_t words);
     /// Sets words of the heads. Does not block.

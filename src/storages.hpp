@@ -24,6 +24,7 @@ private:
     bool finish_pass() override;
     bool review_pass(BuildReport& report) override;
     void make_whole(bool without_pool) override;
+    [[nodiscard]] cl_uint hands_with(std::uint64_t capacity_nodes) const override;
 
     [[nodiscard]] std::uint64_t count_unlinked();
 

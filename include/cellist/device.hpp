@@ -30,6 +30,8 @@ struct DeviceInfo {
     bool sub_groups = false;
     bool fp64 = false;
     bool lanes = false;  ///< warps whose lanes can exchange values: NVIDIA, compute capability 7.0
+    bool threads =
+        false;  ///< a work-group runs on one thread: PoCL on x86-64 and AArch64 processors
 };
 
 /// An OpenCL device with a context, a queue and a cache of built programs. Everything that is made

@@ -79,6 +79,7 @@ typedef struct cellist_view {
     CELLIST_UINT reserves;        // not 0: a reservation takes its nodes at once
     CELLIST_UINT rank_member;     // of the record, that it is ranked by
     CELLIST_UINT rank_words;      // words of the key that have thresholds
+    CELLIST_UINT hands;           // of threads: 0, or a power of two from 8 on
 } cellist_view;
 
 // The counters of one shard, alone in its cache line. The struct behind the last shard holds the
@@ -98,6 +99,17 @@ typedef struct cellist_shard {
     CELLIST_UINT passed;  // when this shard was full, so many were seen full from it on
     CELLIST_UINT padding[4];
 } cellist_shard;
+
+// Nodes that a thread has for itself, alone in its cache line: those at the addresses node ... last - 1,
+// which lie in one block, and then the next ... end - 1 of a shard.
+typedef struct cellist_hand {
+    CELLIST_UINT node;
+    CELLIST_UINT last;
+    CELLIST_UINT shard;
+    CELLIST_UINT next;
+    CELLIST_UINT end;
+    CELLIST_UINT padding[11];
+} cellist_hand;
 
 // What a choice among the records of each cell finds, from 0.
 typedef struct cellist_choice {
