@@ -147,7 +147,7 @@ protected:
     /// Enqueues the reading of the counters: they are there when the event has completed.
     [[nodiscard]] cl::Event read_counters(Shards& shards) const;
     /// Of counters that are followed by so many hands. What is in these counts as free.
-    [[nodiscard]] static Counters sum(const Shards& shards, cl_uint hands = 0);
+    [[nodiscard]] static Counters sum(const Shards& shards, cl_uint hands);
     /// The hands of threads with a pool of this capacity: see threads.clh.
     [[nodiscard]] virtual cl_uint hands_with(std::uint64_t) const { return 0; }
     /// Sets words of the heads, and clears all counters. Does not block.

@@ -43,7 +43,7 @@ bool FixedStorage::finish_pass() {
 }
 
 bool FixedStorage::review_pass(BuildReport& report) {
-    const Counters counters = sum(counters_);
+    const Counters counters = sum(counters_, 0);
     update(report, counters, in_slots_.sum);
     if (counters.dropped == 0 || options_.overflow == Overflow::drop) return true;
 
@@ -105,7 +105,7 @@ std::function<Validation()> FixedStorage::validate() {
         const std::uint64_t stored = check->in_slots.sum;
         const std::uint64_t lost = stored > expected ? stored - expected : expected - stored;
         const std::uint64_t over = check->all.sum - stored;
-        const Counters counters = sum(check->shards);
+        const Counters counters = sum(check->shards, 0);
         // Counts end at their limit, where what was dropped goes on.
         const bool sound = check->all.longest < CELLIST_CELL_COUNT_MAX ? over == counters.dropped
                                                                        : over <= counters.dropped;

@@ -36,9 +36,15 @@ cl_uint LinkedStorage::hands_with(std::uint64_t capacity_nodes) const {
         return 0;
     const cl_uint hands = std::bit_ceil(std::max(2 * device_->info.compute_units, 8U));
     const std::uint64_t nodes = std::uint64_t{hands} * CELLIST_BLOCK_NODES;
-    const bool fit = hands_part * nodes <= capacity_nodes &&
-                     capacity_nodes <= CELLIST_CAPACITY_NODES_MAX - nodes;
-    return fit ? hands : 0;
+    if (hands_part * nodes > capacity_nodes || capacity_nodes > CELLIST_CAPACITY_NODES_MAX - nodes)
+        return 0;
+    // Nor where that would take more memory than there may be.
+    const std::uint64_t pool_bytes = (capacity_nodes + nodes) * node_bytes_;
+    const std::uint64_t counters = (1u << CELLIST_SHARD_BITS_MAX) + 1 + 2 * std::uint64_t{hands};
+    const bool fits = pool_bytes <= device_->info.max_allocation_bytes &&
+                      heads_.size_bytes() + pool_bytes + counters * sizeof(cellist_shard) <=
+                          options_.budget_bytes;
+    return fits ? hands : 0;
 }
 
 void LinkedStorage::clear() {

@@ -111,7 +111,7 @@ private:
     void make_whole(bool without_pool) override;
 
     void prepare_ranking();
-    void run(std::optional<Kernel>& kernel, const char* name, const Memory* choice = nullptr);
+    void run(std::optional<Kernel>& step, const char* name, const Memory* choice = nullptr);
     [[nodiscard]] std::uint64_t row(std::uint64_t number) const { return number * shape_.cells(); }
 
     CellScan scan_;

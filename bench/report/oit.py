@@ -59,6 +59,10 @@ def three_digits(value):
     return f"{value:,.0f}" if value >= 100 else f"{value:.3g}"
 
 
+def decibels(figure):
+    return "equal" if figure["psnr_db"] is None else f"{figure['psnr_db']:.1f} dB"
+
+
 def frames_per_second(figure):
     return 1e3 / figure["ms"]
 
@@ -100,7 +104,7 @@ def goals(results):
         rate = frames_per_second(figure)
         text = f"{three_digits(rate)} frames/s, {three_digits(figure['ms'])} ms"
         rows.append(_at_least("frame_times", figure["case"], text, rate,
-                              FRAMES_PER_SECOND[figure["case"]].get(kind)))
+                              FRAMES_PER_SECOND.get(figure["case"], {}).get(kind)))
     for case in cases("exact_methods", [results]):
         others = [f for f in figures(results, "exact_methods", case=case) if f["method"] != "linked"]
         if not others:
@@ -111,7 +115,7 @@ def goals(results):
             f"{best['method']} is the fastest: {factor:.2f} of linked"
         rows.append(_goal("exact_methods", case, text, factor, *(("> 1", factor > 1) if kind == "gpu" else ())))
     for figure in figures(results, "fewer_layers", layers=8):
-        text = f"{figure['speed_up']:.2f} times as fast, {figure['psnr_db']:.1f} dB"
+        text = f"{figure['speed_up']:.2f} times as fast, {decibels(figure)}"
         rows.append(_goal("fewer_layers", f"8 of {figure['most_layers']}, {figure['case']}", text,
                           figure["speed_up"]))
     for figure in figures(results, "plain_cpp"):

@@ -48,13 +48,13 @@ def frame_times(all_results):
     head = ["scene", "asked of a GPU", "asked of PoCL"] + [device_title(results) for results in all_results]
     rows = []
     for case in oit.cases("frame_times", all_results):
-        asked = oit.FRAMES_PER_SECOND[case]
+        asked = oit.FRAMES_PER_SECOND.get(case, {})
         found = [_only(oit.figures(results, "frame_times", case=case)) for results in all_results]
         first = next(figure for figure in found if figure)
         title = (f"{_CASE_TITLES.get(case, case)}, {first['width']}×{first['height']}, "
                  f"{first['triangles']:,} triangles, {first['fragments']:,} fragments, "
                  f"up to {first['most_layers']} in a pixel")
-        rows.append([title, f"{asked['gpu']:,}", f"{asked['cpu']:,}"] +
+        rows.append([title] + [f"{asked[kind]:,}" if kind in asked else "–" for kind in ("gpu", "cpu")] +
                     [f"{_ms(figure)}, {oit.three_digits(oit.frames_per_second(figure))} a second" if figure else "–"
                      for figure in found])
     return _table(head, rows)
@@ -83,13 +83,9 @@ def fewer_layers(all_results):
         row = [str(layers)]
         for results in all_results:
             figure = _only(oit.figures(results, "fewer_layers", layers=layers))
-            row += [f"{figure['speed_up']:.2f}", _decibels(figure)] if figure else ["–", "–"]
+            row += [f"{figure['speed_up']:.2f}", oit.decibels(figure)] if figure else ["–", "–"]
         rows.append(row)
     return _table(head, rows)
-
-
-def _decibels(figure):
-    return "equal" if figure["psnr_db"] is None else f"{figure['psnr_db']:.1f} dB"
 
 
 def plain_cpp(all_results):
@@ -117,7 +113,7 @@ def accuracy(all_results):
         found = [_only(oit.figures(results, "accuracy", case=case)) for results in all_results]
         row = [case, f"{next(figure for figure in found if figure)['pixels']:,}"]
         for figure in found:
-            row += [_pixels_over(figure), f"{255 * figure['max_abs_error']:.2g}", _decibels(figure)] if figure \
+            row += [_pixels_over(figure), f"{255 * figure['max_abs_error']:.2g}", oit.decibels(figure)] if figure \
                 else ["–"] * 3
         rows.append(row)
     return _table(head, rows)

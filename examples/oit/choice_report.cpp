@@ -70,7 +70,7 @@ std::string untold_text(const SceneMeasure& scene) {
            std::to_string(of_16);
 }
 
-std::string reason(const Candidate& candidate, const Budget& budget) {
+std::string reason(const Candidate& candidate) {
     switch (candidate.fate) {
         case Fate::chosen:
             return "chosen";
@@ -83,7 +83,6 @@ std::string reason(const Candidate& candidate, const Budget& budget) {
         case Fate::failed:
             return candidate.failure;
     }
-    (void)budget;
     return {};
 }
 
@@ -101,7 +100,7 @@ void print_others(const Choice& choice, const Budget& budget, std::ostream& out)
             << std::setw(9)
             << (candidate.fastest_ms ? fixed(*candidate.fastest_ms, 2) + " ms" : "-")
             << std::setw(14) << (candidate.error ? budget.text_of(*candidate.error) : "-") << "  "
-            << reason(candidate, budget) << '\n';
+            << reason(candidate) << '\n';
     };
     std::size_t over = 0, slower = 0;
     for (const Candidate& candidate : choice.candidates)
@@ -124,8 +123,9 @@ void KeptBudget::add(const Keeper::Drawn& drawn, double time, const Budget& budg
     ++frames_;
     if (drawn.checked) ++checked_;
     if (drawn.chosen_again) ++chosen_again_;
-    if (!drawn.met) over_.push_back(time);
-    if (budget.better(worst_.told, drawn.errors.told)) worst_ = drawn.errors;
+    if (!drawn.errors) return;
+    if (!budget.met_by(drawn.errors->told)) over_.push_back(time);
+    if (budget.better(worst_.told, drawn.errors->told)) worst_ = *drawn.errors;
 }
 
 void print(const Choice& choice, const Budget& budget, const KeptBudget& kept, std::ostream& out) {

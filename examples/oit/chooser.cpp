@@ -224,7 +224,7 @@ private:
         }
         leader->least.add(other.ms());
         best_ms_ = std::min(best_ms_, other.ms());
-        note(contender, std::min(own.ms(), best_ms_ * own.ms() / other.ms()));
+        note(contender, own.ms());
         return own.ms() > margin * other.ms() && is_out(contender, margin);
     }
 
@@ -367,6 +367,6 @@ PictureErrors Chooser::check() {
     return errors;
 }
 
-Renderer& Chooser::renderer() { return winner_->renderer; }
+Renderer& Chooser::renderer() const { return winner_->renderer; }
 
 }  // namespace oit

@@ -68,7 +68,7 @@ public:
     [[nodiscard]] PictureErrors check();
 
     /// Draws with what was chosen, after choose().
-    [[nodiscard]] Renderer& renderer();
+    [[nodiscard]] Renderer& renderer() const;
     [[nodiscard]] const Frame& frame() const { return frame_; }
 
 private:

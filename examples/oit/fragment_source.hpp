@@ -90,13 +90,13 @@ public:
 
     /// Enqueues such a kernel; `args` are those in front of OIT_SCREEN.
     template <class... Args>
-    void run_on_screen(cellist::Kernel& kernel, const Args&... args) {
+    void run_on_screen(cellist::Kernel& step, const Args&... args) {
         const cellist::Buffer<cl_float4>& image = sample_image_ ? *sample_image_ : image_;
-        if (opaque_) kernel
-            .run(screen_, args..., constants_, projection_.views(), opaque_->depth_bits,
-                 opaque_->colour, image);
-        else kernel
-            .run(screen_, args..., constants_, projection_.views(), image);
+        if (opaque_)
+            step.run(screen_, args..., constants_, projection_.views(), opaque_->depth_bits,
+                     opaque_->colour, image);
+        else
+            step.run(screen_, args..., constants_, projection_.views(), image);
     }
 
     /// Averages samples that were blended on their own. Does not block.

@@ -22,7 +22,7 @@ Keeper::Keeper(const cellist::Device& device, const Frame& frame, const Budget& 
 
 void Keeper::choose() {
     choice_ = chooser_.choose();
-    renderer_ = &chooser_.renderer();
+    errors_ = choice_.errors;
 }
 
 bool Keeper::has_changed() const {
@@ -31,26 +31,27 @@ bool Keeper::has_changed() const {
 }
 
 Keeper::Drawn Keeper::draw() {
-    Drawn drawn{.met = choice_.met, .errors = choice_.errors};
-    if (!has_changed()) {
-        drawn.frame_ms = renderer_->draw();
-        return drawn;
-    }
+    Drawn drawn;
     const Frame& frame = chooser_.frame();
-    now_.time = frame.time;
-    now_.views = frame.views;
-    drawn.frame_ms = chooser_.draw_changed();
-    if (++unchecked_ < check_every_) return drawn;
-    unchecked_ = 0;
-    drawn.checked = true;
-    drawn.errors = chooser_.check();
-    drawn.met = budget_.met_by(drawn.errors.told);
-    if (drawn.met) return drawn;
-    choose();
-    drawn.chosen_again = true;
-    drawn.met = choice_.met;
-    drawn.errors = choice_.errors;
-    drawn.frame_ms = renderer_->draw();
+    if (has_changed()) {
+        now_.time = frame.time;
+        now_.views = frame.views;
+        errors_.reset();
+        drawn.frame_ms = chooser_.draw_changed();
+    } else {
+        drawn.frame_ms = renderer().draw();
+    }
+    if (!errors_ && ++unchecked_ >= check_every_) {
+        unchecked_ = 0;
+        drawn.checked = true;
+        errors_ = chooser_.check();
+        if (!budget_.met_by(errors_->told)) {
+            choose();
+            drawn.chosen_again = true;
+            drawn.frame_ms = renderer().draw();
+        }
+    }
+    drawn.errors = errors_;
     return drawn;
 }
 

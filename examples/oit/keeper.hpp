@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "chooser.hpp"
 
@@ -9,9 +10,9 @@ namespace oit {
 /// Draws frames of a changing scene within a budget.
 ///
 /// What was chosen for one moment need not do for the next. Each frame whose time or views differ from
-/// those of the last check is surveyed and compared; where it is over the budget, a setting is chosen
-/// again and the frame drawn again. With `check_every` N, only each N-th of the changed frames is
-/// checked, and nothing is known of those between: for speed, where the picture changes little.
+/// those of the last is surveyed and compared; where it is over the budget, a setting is chosen again and
+/// the frame drawn again. With `check_every` N, a check follows N frames of which nothing is known, the
+/// last of them included: for speed, where the picture changes little.
 class Keeper {
 public:
     /// A frame that was drawn.
@@ -19,8 +20,8 @@ public:
         double frame_ms = 0;
         bool checked = false;
         bool chosen_again = false;
-        bool met = true;
-        PictureErrors errors = {};  ///< where it was checked
+        /// Where this moment was checked, now or before.
+        std::optional<PictureErrors> errors = {};
     };
 
     /// Chooses for the frame as it is. Refers to the device and the frame, which must outlive it; the
@@ -33,7 +34,7 @@ public:
 
     /// The last choice.
     [[nodiscard]] const Choice& choice() const { return choice_; }
-    [[nodiscard]] Renderer& renderer() const { return *renderer_; }
+    [[nodiscard]] Renderer& renderer() const { return chooser_.renderer(); }
 
 private:
     void choose();
@@ -42,10 +43,10 @@ private:
     Chooser chooser_;
     Budget budget_;
     std::uint32_t check_every_;
-    std::uint32_t unchecked_ = 0;  ///< changed frames since the last check
+    std::uint32_t unchecked_ = 0;               ///< frames since the last check
+    std::optional<PictureErrors> errors_ = {};  ///< of this moment, where they are known
     Choice choice_;
     Frame now_;  ///< as it was drawn last
-    Renderer* renderer_ = nullptr;
 };
 
 }  // namespace oit

@@ -89,9 +89,11 @@ public:
 
     [[nodiscard]] std::uint64_t device_bytes() const override { return fragments_->pool_bytes(); }
     [[nodiscard]] std::optional<cellist::Lengths> lengths() const override {
+        if (!keeps_all()) return {};
         return fragments_->lengths();
     }
     [[nodiscard]] std::optional<StoredDepths> depths() const override {
+        if (!keeps_all()) return {};
         const cellist::HostLists<Node> lists = fragments_->download();
         StoredDepths stored{{lists.offsets().begin(), lists.offsets().end()}, {}};
         for (const Node& node : lists.records())
@@ -100,6 +102,8 @@ public:
     }
 
 private:
+    [[nodiscard]] bool keeps_all() const { return options_.overflow == cellist::Overflow::grow; }
+
     // Makes a pool for as many fragments as there were, and a quarter more.
     void settle() {
         const auto more = [](std::uint64_t n) { return n + n / 4 + 1; };

@@ -98,7 +98,7 @@ void draw_within_budget(oit::Report& report, oit::Keeper& keeper, oit::Frame& fr
     });
     report.passes = draw_passes(keeper.renderer(), report.options.frames);
     report.choice = keeper.choice();
-    report.options.method = oit::method_text(report.choice->setting);
+    report.options.method = report.choice->setting.method->name;
     report.options.quality = report.choice->setting.quality;
 }
 

@@ -59,8 +59,8 @@ typedef struct {
 
 static inline float oit_light_difference(const OitLight* a, const OitLight* b, float brightest,
                                          float distance) {
-    float difference =
-        oit_brightest(fabs(a->colour - b->colour)) + oit_most(fabs(a->transmittance - b->transmittance)) * brightest;
+    float difference = oit_brightest(fabs(a->colour - b->colour)) +
+                       oit_most(fabs(a->transmittance - b->transmittance)) * brightest;
 #ifdef OIT_ABSORBS
     const float3 extinction = fabs(a->extinction - b->extinction);
     difference += oit_most(a->transmittance) * brightest *
@@ -168,15 +168,21 @@ static inline void oit_add_packing(OitPacking* packing, const OitFrame* frame,
 // Bounds are known for what covers and what adds.
 #define OIT_HAS_PACKING_BOUND ((OIT_BLENDS & ~(1u << OIT_OVER | 1u << OIT_ADDITIVE)) == 0u)
 
-// How far the linear image is from the truth at most, where the order of its layers is right: shading,
-// and each layer's blending.
-static inline float3 oit_rounding(const OitFrame* frame, float3 seen, uint layers,
+// How far the linear image is from the truth at most, where the order of its layers is right. shares: the
+// sum of the parts of their colours that layers add. u is 2^-24; see docs/numerics.md.
+static inline float3 oit_rounding(const OitFrame* frame, float3 seen, uint layers, float shares,
                                   float brightest) {
-    float3 error = OIT_SHADING_ERROR * frame->colour_max + seen * (0x1p-20f + 0x1p-22f * layers);
+    // The shading of each layer by its share, and what is behind. Where surfaces cover, shares sum to 1.
+    float3 error = OIT_SHADING_ERROR * frame->colour_max * fmax(shares, 1.0f);
+    // Blending, (3 n + 2) u of sums without a negative term; the mean of samples rounds up to 8 times more.
+    error += seen * (0x1p-20f + 0x1p-22f * layers);
 #ifdef OIT_HAS_OPACITIES
+    // Opacities of the corners are interpolated as depths are, to 8 u.
     error += 0x1p-21f * brightest * layers;
 #endif
 #ifdef OIT_ABSORBS
+    // Distances are differences of two depths, each off by 8 u of itself: 256 u, where extinction times
+    // depth is 16 at most.
     error += 0x1p-16f * seen * layers;
 #endif
     return error;
@@ -254,6 +260,7 @@ kernel void oit_survey(CELLIST_LISTS(OIT_NODE, fragments), const OitResolution r
         float behind[OIT_LAYER_COUNT];
         for (int i = 0; i < OIT_LAYER_COUNT; ++i) behind[i] = 0.0f;
         uint is_cut = 0, layers = 0;
+        float shares = 0.0f;
         float hidden = 0.0f;  // by opaque surfaces, or not
         cellist_for_each(fragments, cell, node) {
             OitFragment fragment = oit_unpack(&pixel.frame, cellist_get(fragments, node));
@@ -282,6 +289,7 @@ kernel void oit_survey(CELLIST_LISTS(OIT_NODE, fragments), const OitResolution r
             }
             oit_next_layer(&order, &pixel, &resolution, &lights, &fragment, brightest, last_depth);
             oit_add_packing(&packing, &pixel.frame, &fragment, passes, brightest);
+            shares += passes * fragment.alpha;
             oit_add(&lights, &pixel, &fragment);
             ++layers;
             own.most[OIT_OPACITY] = fmax(own.most[OIT_OPACITY], fragment.alpha);
@@ -290,12 +298,13 @@ kernel void oit_survey(CELLIST_LISTS(OIT_NODE, fragments), const OitResolution r
 
         const float3 seen = oit_mean_seen(OIT_SCREEN_PASS, &pixel, &lights);
         const float3 encoded = oit_srgb3(seen);
-        const float3 off = oit_rounding(&pixel.frame, seen, layers, brightest);
+        const float3 off = oit_rounding(&pixel.frame, seen, layers, shares, brightest);
         const float3 certain = oit_encoded_error3(seen, off) + OIT_ENCODING_ERROR;
         const float float_order = order.effect[0] + hidden;
         float4 uncertain = (float4)(certain, 0.0f);
         if (float_order > 0.0f)
-            uncertain.w = oit_brightest(oit_encoded_error3(seen, off + float_order) - certain + OIT_ENCODING_ERROR);
+            uncertain.w = oit_brightest(oit_encoded_error3(seen, off + float_order) - certain +
+                                        OIT_ENCODING_ERROR);
         image[pixel.pixel] = (float4)(seen, 1.0f);
         uncertainty[pixel.pixel] = uncertain;
 

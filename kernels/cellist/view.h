@@ -70,7 +70,7 @@
 typedef struct cellist_view {
     CELLIST_UINT extent[4];       // cells along x, y, z, w; missing dimensions are 1
     CELLIST_UINT cells;           // product of the extents
-    CELLIST_UINT capacity_nodes;  // nodes in the pool
+    CELLIST_UINT capacity_nodes;  // nodes in the pool, those for hands of threads included
     CELLIST_UINT shard_bits;      // the counters have 2^shard_bits shards
     CELLIST_UINT mode;            // one of the modes above
     CELLIST_UINT slots;           // nodes of each cell in mode FIXED

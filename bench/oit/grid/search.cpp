@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <stdexcept>
 
 #include "image.hpp"
 #include "progress.hpp"
@@ -92,7 +93,7 @@ struct Search::Drawn {
 };
 
 Search::Search(const cellist::Device& device, const Frame& frame, std::uint32_t runs)
-    : truth_(device, frame), runs_(runs) {
+    : frame_(frame), truth_(device, frame), runs_(runs) {
     // The device may find one layer more than the reference, where that is no more than rounding.
     for (const Setting& setting : settings_for(frame, truth_.reference().most_layers() + 1))
         trials_.push_back({.setting = setting});
@@ -121,7 +122,10 @@ void Search::draw(const cellist::Device& device, const Frame& frame, Trial& tria
 }
 
 void Search::time_all() {
-    const Trial* exact = find(all_layers_in_float(drawn_.front()->frame));
+    const Trial* exact = find(all_layers_in_float(frame_));
+    if (!exact || !exact->failure.empty())
+        throw std::runtime_error("all layers in float cannot be drawn: " +
+                                 (exact ? exact->failure : std::string("no such setting")));
     std::vector<const Trial*> near;
     for (const Trial& trial : trials_)
         if (trial.failure.empty() && trial.times.median_ms < far_slower * exact->times.median_ms)

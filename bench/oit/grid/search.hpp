@@ -58,7 +58,8 @@ struct Trial {
 class Search {
 public:
     /// Draws each setting `runs` times at least, and keeps all renderers. Blocks. Refers to the
-    /// device and the frame, which must outlive it.
+    /// device and the frame, which must outlive it. Throws std::runtime_error where the device cannot
+    /// draw all layers in float.
     Search(const cellist::Device& device, const Frame& frame, std::uint32_t runs);
     Search(const Search&) = delete;
     Search& operator=(const Search&) = delete;
@@ -88,6 +89,7 @@ private:
         return *drawn_[static_cast<std::size_t>(&trial - trials_.data())];
     }
 
+    const Frame& frame_;
     Truth truth_;
     std::uint32_t runs_;
     std::vector<Trial> trials_;

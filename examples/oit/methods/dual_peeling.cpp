@@ -64,7 +64,10 @@ private:
     cellist::Buffer<cl_uint> left_;
 };
 
-std::uint64_t passes(const SceneMeasure& scene, const Quality&) { return scene.longest / 2 + 1; }
+// The first takes no layer.
+std::uint64_t passes(const SceneMeasure& scene, const Quality&) {
+    return (scene.longest + 1) / 2 + 1;
+}
 
 const MethodRegistration dual_peeling(
     {.name = "dual_peeling",

@@ -36,7 +36,8 @@ const MethodRegistration kbuffer(
      .sizes = sizes,
      .refusal = refuses_nothing,
      .make = make,
-     .bound = bound});
+     .bound = bound,
+     .passes = two_passes});
 
 }  // namespace
 }  // namespace oit
