@@ -169,8 +169,7 @@ private:
         bool slower = false;
         try {
             contender = std::make_unique<Contender>(device_, frame_, candidate);
-            contender->renderer.draw();  // builds the kernels' last variants and grows the pool
-            contender->renderer.draw();
+            contender->renderer.warm_up();
             slower = is_slower(*contender, first_margin);
         } catch (const std::exception& error) {
             const std::string message = error.what();

@@ -100,7 +100,7 @@ Options parse_options(int count, const char* const* arguments) {
                  "compare with a rendering in double precision on the CPU");
     add("--out", out, "picture to write", "FILE.png");
     add("--json", json, "write the figures to this file", "FILE");
-    add("--frames", frames, "timed frames, after one that is not; times are medians", "N");
+    add("--frames", frames, "timed frames, after those that warm up; times are medians", "N");
     app.footer(help_on_tables());
     if (const auto help = support::parse_command_line(app, count, arguments)) {
         options.help = true;

@@ -57,6 +57,12 @@ bool Renderer::complete() {
     return method_->complete() && drawn;
 }
 
+void Renderer::warm_up() {
+    // The first frame finds out how much room the second makes.
+    draw();
+    draw();
+}
+
 double Renderer::draw() {
     device_.finish();
     const support::Stopwatch stopwatch;

@@ -23,7 +23,7 @@ std::vector<Contender> contenders(Run& run, const Stage& stage) {
         if (!method.exact) continue;
         try {
             auto renderer = std::make_unique<oit::Renderer>(run.device(), stage.frame, method);
-            renderer->draw();
+            renderer->warm_up();
             result.push_back({method.name, std::move(renderer)});
         } catch (const std::exception& error) {
             run.leave_out("exact_methods/" + std::string(method.name), error.what());

@@ -33,7 +33,7 @@ Options parse(int count, const char* const* arguments) {
     oit::add_option(app, "--filter", options.filter,
                     "only what matches this regular expression: SECTION/CASE", "RE");
     oit::add_option(app, "--size", size, "factor of the sides of all images", "F");
-    oit::add_option(app, "--frames", frames, "timed frames of each kind, after two that are not",
+    oit::add_option(app, "--frames", frames, "timed frames of each kind, after those that warm up",
                     "N");
     app.footer("Sections: frame_times, exact_methods, fewer_layers, plain_cpp, accuracy\n");
     if (const auto help = support::parse_command_line(app, count, arguments)) {
