@@ -75,12 +75,6 @@ double Renderer::draw() {
     return stopwatch.ms();
 }
 
-double Renderer::draw_at(double time) {
-    if (reduction_) reduction_->move_to(time);
-    source_.move_to(time);
-    return draw();
-}
-
 double Renderer::draw_changed() {
     if (reduction_) reduction_->follow();
     source_.follow();
