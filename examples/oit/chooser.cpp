@@ -104,7 +104,7 @@ public:
         const std::vector<Setting> settings = settings_for(frame_, choice_.scene.longest);
         // The exact picture, of which all others are a trade, then all methods at their simplest, then
         // the other settings of those that are fast enough.
-        const Setting exact{&method_named("linked"), settings.front().quality};
+        const Setting exact = exact_setting(frame_.quality);
         draw(exact, {});
         measure_pass();
         choice_.exact_ms = family_ms_[exact.method->name];

@@ -12,6 +12,7 @@ const MethodRegistration linked({.name = "linked",
                                  .summary = "a linked list for each pixel (Yang et al. 2010)",
                                  .position = 1,
                                  .exact = true,
+                                 .cuts = true,
                                  .refusal = refuses_nothing,
                                  .make = make,
                                  .bound = bound_of_layers});
