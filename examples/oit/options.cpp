@@ -8,6 +8,7 @@
 
 #include "command_line.hpp"
 #include "input_error.hpp"
+#include "number_text.hpp"
 #include "setting.hpp"
 
 namespace oit {
@@ -72,9 +73,12 @@ void read_memory(const std::string& text, Options& options) {
 
 Options parse_options(int count, const char* const* arguments) {
     Options options;
-    std::string method = options.method, layers = "all", epsilon = "0", format = "float", budget,
-                check_every = "1", until, reduce = "1", memory, turn = "0",
-                out = options.out.string(), json, frames = "5";
+    std::string method = options.method, format(name_of(options.quality.format)), layers = "all",
+                epsilon = shortest(options.quality.epsilon);
+    std::string reduce = std::to_string(options.quality.reduce), memory, budget,
+                check_every = std::to_string(options.check_every);
+    std::string until, turn = shortest(options.turn_degrees),
+                       frames = std::to_string(options.frames), out = options.out.string(), json;
     CLI::App app{"Draws a mesh or a scene with order-independent transparency.", "cellist-oit"};
     const auto add = [&](const char* name, std::string& value, const char* what, const char* type) {
         add_option(app, name, value, what, type);

@@ -111,6 +111,20 @@ TEST_CASE("the text of a setting is read as that setting") {
     }
 }
 
+TEST_CASE("options that are not given are as they were") {
+    const char* const arguments[] = {"cellist-oit", "smoke"};
+    const oit::Options read = oit::parse_options(2, arguments), usual;
+    CHECK(read.quality == usual.quality);
+    CHECK(read.alpha == usual.alpha);
+    CHECK(read.orbit.azimuth_degrees == usual.orbit.azimuth_degrees);
+    CHECK(read.orbit.elevation_degrees == usual.orbit.elevation_degrees);
+    CHECK(read.width == usual.width);
+    CHECK(read.frames == usual.frames);
+    CHECK(read.check_every == usual.check_every);
+    CHECK_FALSE(read.blend);
+    CHECK_FALSE(read.eye_separation);
+}
+
 TEST_CASE("larger sizes of an approximation are not less accurate") {
     const oit::Scene scene = knot();
     const oit::Frame frame = frame_of(scene);

@@ -10,6 +10,7 @@
 #include "command_line.hpp"
 #include "image.hpp"
 #include "input_error.hpp"
+#include "number_text.hpp"
 #include "oit/frames/run.hpp"
 
 namespace {
@@ -22,7 +23,8 @@ struct Options : bench::RunOptions {
 
 Options parse(int count, const char* const* arguments) {
     Options options;
-    std::string size = "1", frames = std::to_string(options.frames), meshes, json;
+    std::string size = oit::shortest(options.size), frames = std::to_string(options.frames), meshes,
+                json;
     CLI::App app{
         "Measures whole frames, exact methods, fewer layers, plain C++ and the accuracy of "
         "all layers.",
