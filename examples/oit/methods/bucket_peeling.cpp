@@ -97,7 +97,7 @@ std::uint64_t passes(const SceneMeasure&, const Quality&) { return 3; }
 const MethodRegistration bucket_peeling(
     {.name = "bucket_peeling",
      .summary = "a layer of each of 8 or other ranges of depth a pass (Liu et al. 2009)",
-     .position = 6,
+     .position = 60,
      .exact = true,
      .sizes = sizes,
      .refusal = refusal,

@@ -42,7 +42,7 @@ private:
 const MethodRegistration moments(
     {.name = "moments",
      .summary = "transmittance from four moments of depth (Muenstermann et al. 2018)",
-     .position = 10,
+     .position = 100,
      .exact = false,
      .refusal = accumulating_refusal,
      .make = make_accumulating<Moments>,

@@ -55,7 +55,7 @@ private:
 const MethodRegistration stochastic(
     {.name = "stochastic",
      .summary = "8 or other random trials of which fragments hide others (Enderton et al. 2010)",
-     .position = 9,
+     .position = 90,
      .exact = false,
      .sizes = sizes,
      .refusal = accumulating_refusal,
