@@ -101,8 +101,8 @@ public:
     }
 
 private:
-    // Makes a pool for as many fragments as there were, and a quarter more. Where that is more than the
-    // budget or the device has, though a pool for the demand itself was not, lists go on to grow.
+    // Makes a pool for as many fragments as there were, and a quarter more. Where that is more than
+    // the budget or the device has, though the demand itself was not, lists go on to grow.
     void settle(const cellist::Lengths& lengths) {
         const auto more = [](std::uint64_t n) { return n + n / 4 + 1; };
         cellist::ListsOptions options = options_;

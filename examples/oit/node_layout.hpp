@@ -79,8 +79,8 @@ struct NodeLayout {
 /// The macros that node.clh is compiled with.
 [[nodiscard]] std::string defines_of(const NodeLayout& layout);
 
-/// Calls `use` with a null pointer to the node type of `words` words, and returns what it returns. Throws
-/// std::out_of_range where there is none.
+/// Calls `use` with a null pointer to the node type of `words` words, and returns what it returns.
+/// Throws std::out_of_range where there is none.
 auto with_node_type(std::uint32_t words, auto&& use) {
     switch (words) {
         case 1:

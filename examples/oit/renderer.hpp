@@ -28,7 +28,8 @@ public:
     Renderer(const cellist::Device& device, const Frame& frame,
              const MethodInfo& method = method_named("linked"));
 
-    /// Draws until frames are of one kind: builds the kernels' last variants and grows pools. Blocks.
+    /// Draws until frames are of one kind: builds the kernels' last variants and grows pools.
+    /// Blocks.
     void warm_up();
     /// Draws once, and blocks until the image is there: milliseconds from clearing to the image. Throws
     /// InputError where the method needs more than Frame::memory_bytes.

@@ -21,8 +21,8 @@ oit::Scene scene_named(const std::string& name) {
 }
 
 // Draws the scene and requires that no pixel differs from the reference by more than 1/255, unless
-// float cannot tell depths apart, which is so in `most_over` of the pixels at most. Returns the length
-// of the longest list.
+// float cannot tell depths apart, which is so in a part `most_over` of the pixels at most. Returns
+// the length of the longest list.
 std::uint64_t require_accurate(const oit::Scene& scene, int width, int height,
                                const support::Orbit& orbit = {60, 25}, double most_over = 1e-4) {
     const oit::Frame frame{.scene = scene,
