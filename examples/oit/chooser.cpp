@@ -104,7 +104,7 @@ public:
         const std::vector<Setting> settings = settings_for(frame_, choice_.scene.longest);
         // The exact picture, of which all others are a trade, then all methods at their simplest, then
         // the other settings of those that are fast enough.
-        const Setting exact{&method_named("linked"), settings.front().quality};
+        const Setting exact = exact_setting(frame_.quality);
         draw(exact, {});
         measure_pass();
         choice_.exact_ms = family_ms_[exact.method->name];
@@ -169,8 +169,7 @@ private:
         bool slower = false;
         try {
             contender = std::make_unique<Contender>(device_, frame_, candidate);
-            contender->renderer.draw();  // builds the kernels' last variants and grows the pool
-            contender->renderer.draw();
+            contender->renderer.warm_up();
             slower = is_slower(*contender, first_margin);
         } catch (const std::exception& error) {
             const std::string message = error.what();

@@ -130,16 +130,12 @@ FragmentSource::FragmentSource(const cellist::Device& device, const Frame& frame
     if (frame.blend_function) check_blend_function(device, defines_, *frame.blend_function);
 }
 
-void FragmentSource::move_to(double time) {
-    projection_.move(placed_at(frame_.scene, time), frame_.views);
-}
-
 void FragmentSource::follow() {
     const Needs now = needs_of(frame_);
     needs_.least_depth = now.least_depth;
     needs_.greatest_depth = now.greatest_depth;
     constants_ = constants_of(frame_, needs_);
-    move_to(frame_.time);
+    projection_.move(placed_at(frame_.scene, frame_.time), frame_.views);
 }
 
 void FragmentSource::transform() { projection_.transform(); }

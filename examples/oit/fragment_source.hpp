@@ -26,9 +26,6 @@ public:
     /// blend function does not compile, cellist::Error where the device cannot hold the image.
     FragmentSource(const cellist::Device& device, const Frame& frame);
 
-    /// Moves what moves to where it is at a time in seconds. Blocks.
-    void move_to(double time);
-
     /// The frame has another time, or other views of the same size. Blocks.
     void follow();
 
@@ -145,10 +142,6 @@ private:
         cellist::Buffer<cl_float4> colour;
 
         explicit Opaque(const FragmentSource& source);
-    };
-    // Instances of the transparent and of the opaque surfaces.
-    struct Chosen {
-        std::vector<std::size_t> transparent, opaque;
     };
 
     [[nodiscard]] raster::Sampling sampling() const;

@@ -40,6 +40,8 @@ struct Quality {
     int reduce = 1;
     /// What the method is compiled for, of MethodInfo::sizes; none means its default.
     std::optional<std::uint32_t> size = {};
+
+    [[nodiscard]] bool operator==(const Quality& other) const = default;
 };
 
 /// Everything that determines a picture; the device and the reference draw the same.

@@ -13,6 +13,7 @@
 #include "input_error.hpp"
 #include "mesh.hpp"
 #include "method.hpp"
+#include "number_text.hpp"
 #include "raster/rasteriser.hpp"
 #include "scenes.hpp"
 
@@ -80,16 +81,24 @@ void read_depth_scale(const std::string& text, FrameOptions& options) {
     options.quality.depth_scale = text == "linear" ? DepthScale::linear : DepthScale::reversed;
 }
 
+constexpr std::pair<std::string_view, Blend> blend_kinds[] = {
+    {"over", Blend::over},
+    {"additive", Blend::additive},
+    {"multiplicative", Blend::multiplicative},
+    {"absorb", Blend::absorb},
+};
+
+std::string blend_text(const FrameOptions& options) {
+    if (options.blend_function) return options.blend_function->file_name;
+    for (const auto& [name, blend] : blend_kinds)
+        if (options.blend == blend) return std::string(name);
+    return {};
+}
+
 // A kind of blending, or a file with a function.
 void read_blend(const std::string& text, FrameOptions& options) {
-    constexpr std::pair<std::string_view, Blend> kinds[] = {
-        {"over", Blend::over},
-        {"additive", Blend::additive},
-        {"multiplicative", Blend::multiplicative},
-        {"absorb", Blend::absorb},
-    };
     if (text.empty()) return;
-    for (const auto& [name, blend] : kinds)
+    for (const auto& [name, blend] : blend_kinds)
         if (text == name) {
             options.blend = blend;
             return;
@@ -162,7 +171,20 @@ std::string help_on_tables() {
 }
 
 FrameArguments::FrameArguments(CLI::App& app, const FrameOptions& options)
-    : size_(std::to_string(options.width) + "x" + std::to_string(options.height)) {
+    : scene_(options.scene),
+      size_(std::to_string(options.width) + "x" + std::to_string(options.height)),
+      alpha_(shortest(options.alpha)),
+      blend_(blend_text(options)),
+      samples_(std::to_string(options.quality.samples)),
+      resolve_(options.quality.resolve == Resolve::per_pixel ? "pixel" : "sample"),
+      depth_scale_(options.quality.depth_scale == DepthScale::linear ? "linear" : "reversed"),
+      view_(shortest(options.orbit.azimuth_degrees) + "," +
+            shortest(options.orbit.elevation_degrees)),
+      eyes_(options.eye_separation ? shortest(*options.eye_separation) : ""),
+      time_(shortest(options.time)),
+      device_(options.device),
+      depth_range_(options.quality.depth_range),
+      opaque_floor_(options.opaque_floor) {
     const auto add = [&](const char* name, std::string& value, const char* what, const char* type) {
         add_option(app, name, value, what, type);
     };

@@ -44,10 +44,10 @@ public:
     void read(FrameOptions& options) const;
 
 private:
-    std::string scene_, size_, alpha_ = "0.35", blend_, samples_ = "1", resolve_ = "pixel",
-                               depth_scale_ = "linear", view_ = "25,8", eyes_, time_ = "0", device_;
-    bool depth_range_ = false;
-    bool opaque_floor_ = false;
+    std::string scene_, size_, alpha_, blend_, samples_, resolve_, depth_scale_, view_, eyes_,
+        time_, device_;
+    bool depth_range_;
+    bool opaque_floor_;
 };
 
 /// Adds an option with a text to a command line; what it has is its default.

@@ -1,6 +1,7 @@
 #include "list_method.hpp"
 
 #include <bit>
+#include <utility>
 
 #include "list_slices.hpp"
 #include "oit_kernels.hpp"
@@ -38,7 +39,7 @@ ListReader reader_of(const Quality& quality, const std::optional<ListReader>& re
 
 // The device is waited for where the length of the lists is not known: in the first frame, and in others that
 // have more fragments than fit. All further ones are enqueued at once, into a pool with room for
-// somewhat more fragments than the first had.
+// somewhat more fragments than the first had; or drawn as the first, where there is no such room.
 template <class Node>
 class ListMethod : public Method {
 public:
@@ -46,8 +47,9 @@ public:
                const std::optional<ListReader>& reader)
         : source_(source),
           options_(options),
-          fragments_(std::in_place, source.device(), source.shape(), options),
+          fragments_(lists_with(options)),
           pass_(source.pass(kernels::lists_cl, "lists.cl", *fragments_)),
+          settles_(keeps_all()),
           longer_(source.device(), 1) {
         const Quality& quality = source.frame().quality;
         sorts_ = needs_sorting(quality, reader);
@@ -56,7 +58,7 @@ public:
     }
 
     void store() override {
-        if (known_ && !settled_) settle();
+        if (known_) settle(*std::exchange(known_, std::nullopt));
         const auto draw = [this] { source_.draw(pass_, *fragments_); };
         if (settled_)
             built_ = fragments_->build_async(draw);
@@ -77,8 +79,7 @@ public:
 
     [[nodiscard]] bool complete() override {
         if (!settled_) {
-            if (!known_ && options_.overflow == cellist::Overflow::grow)
-                known_ = fragments_->lengths();
+            if (settles_) known_ = fragments_->lengths();
             return true;
         }
         const bool fitted = built_.get().dropped == 0;
@@ -104,29 +105,40 @@ public:
 private:
     [[nodiscard]] bool keeps_all() const { return options_.overflow == cellist::Overflow::grow; }
 
-    // Makes a pool for as many fragments as there were, and a quarter more.
-    void settle() {
+    // Makes a pool for as many fragments as there were, and a quarter more. Where that is more than
+    // the budget or the device has, though the demand itself was not, lists go on to grow.
+    void settle(const cellist::Lengths& lengths) {
         const auto more = [](std::uint64_t n) { return n + n / 4 + 1; };
         cellist::ListsOptions options = options_;
         options.overflow = cellist::Overflow::drop;
         if (options.storage == cellist::Storage::fixed)
-            options.slots = static_cast<std::uint32_t>(more(known_->longest));
+            options.slots = static_cast<std::uint32_t>(more(lengths.longest));
         else
-            options.capacity_nodes = more(known_->total);
-        const std::uint64_t longest = more(known_->longest);
+            options.capacity_nodes = more(lengths.total);
+        const std::uint64_t longest = more(lengths.longest);
+        try {
+            // The old pool goes first, so that the device never holds both.
+            *fragments_ = lists_with(options_);
+            *fragments_ = lists_with(options);
+        } catch (const cellist::Error&) {
+            settles_ = false;
+            return;
+        }
         if (may_sort_on_the_way_ && longest <= sorted_on_the_way_max)
             sorter_.emplace(kernel_of(blending_reader(
                 "#define OIT_SORTED " + std::to_string(std::bit_ceil(longest + 1)) + "\n")));
         else
             sorter_.reset();
-        fragments_.emplace(source_.device(), source_.shape(), options);
         settled_ = true;
     }
 
     void unsettle() {
-        known_.reset();
+        *fragments_ = lists_with(options_);
         settled_ = false;
-        fragments_.emplace(source_.device(), source_.shape(), options_);
+    }
+
+    [[nodiscard]] cellist::Lists<Node> lists_with(const cellist::ListsOptions& options) const {
+        return {source_.device(), source_.shape(), options};
     }
 
     [[nodiscard]] cellist::Kernel kernel_of(const ListReader& reader) const {
@@ -141,9 +153,10 @@ private:
     bool may_sort_on_the_way_ = false;
     std::optional<cellist::Kernel> reader_;
     std::optional<cellist::Kernel> sorter_;  // reads lists that are not sorted
-    cellist::Buffer<cl_uint> longer_;        // not 0 where it met a list that is too long
-    std::optional<cellist::Lengths> known_;
+    bool settles_;
     bool settled_ = false;
+    std::optional<cellist::Lengths> known_;  // of the last frame, where the next one settles
+    cellist::Buffer<cl_uint> longer_;        // not 0 where it met a list that is too long
     cellist::Pending<cellist::BuildReport> built_;
     cellist::Pending<std::vector<cl_uint>> longer_read_;
 };

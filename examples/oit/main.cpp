@@ -81,8 +81,7 @@ oit::Comparison compare_with_reference(const oit::Frame& frame, const oit::Rende
 }
 
 void draw_with_method(oit::Report& report, oit::Renderer& renderer, oit::Frame& frame) {
-    renderer.draw();  // builds the kernels' last variants and grows the pool
-    renderer.draw();
+    renderer.warm_up();
     const bool changes = report.options.until || report.options.turn_degrees != 0;
     report.frame_ms = draw_frames(
         frame, report.options, [&] { return changes ? renderer.draw_changed() : renderer.draw(); });

@@ -13,8 +13,7 @@ constexpr double most_ms = 10'000;  // so that a slow method does not hold up al
 
 void time_frames(Renderer& renderer, std::uint32_t runs, Measurement& result) {
     const support::Stopwatch stopwatch;
-    renderer.draw();  // builds the kernels' last variants and grows the pool
-    renderer.draw();
+    renderer.warm_up();
     std::vector<double> times;
     do times.push_back(renderer.draw());
     while (times.size() < runs && stopwatch.ms() < most_ms);

@@ -25,8 +25,8 @@ struct Measurement {
     [[nodiscard]] bool drawn() const { return failure.empty(); }
 };
 
-/// Draws a frame with a setting `runs` times, after one time that is not counted, or until ten seconds
-/// have passed, and compares the image with the reference: that of all layers. Blocks. Does not throw
+/// Draws a frame with a setting `runs` times after Renderer::warm_up(), or until ten seconds have
+/// passed, and compares the image with the reference: that of all layers. Blocks. Does not throw
 /// where the device cannot draw it.
 [[nodiscard]] Measurement measure(const cellist::Device& device, const Frame& frame,
                                   const Setting& setting, const Reference& reference,

@@ -62,8 +62,9 @@ public:
 struct MethodInfo {
     std::string_view name;
     std::string_view summary;  ///< what it does and where it comes from, in one line
-    int position;              ///< in the table
+    int position;              ///< in the table: in steps of 10, so that a method fits between two
     bool exact;                ///< the image of all fragments, up to rounding
+    bool cuts = false;         ///< tried with fewer layers and early ends
     /// What it can be compiled for (layers, trials, steps ...), smallest first: Quality::size. Nothing
     /// where there is no such choice.
     std::span<const std::uint32_t> sizes = {};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 
 #include <cellist/cellist.hpp>
@@ -79,6 +80,7 @@ struct NodeLayout {
 [[nodiscard]] std::string defines_of(const NodeLayout& layout);
 
 /// Calls `use` with a null pointer to the node type of `words` words, and returns what it returns.
+/// Throws std::out_of_range where there is none.
 auto with_node_type(std::uint32_t words, auto&& use) {
     switch (words) {
         case 1:
@@ -93,8 +95,10 @@ auto with_node_type(std::uint32_t words, auto&& use) {
             return use(static_cast<const Node5*>(nullptr));
         case 6:
             return use(static_cast<const Node6*>(nullptr));
-        default:
+        case 7:
             return use(static_cast<const Node7*>(nullptr));
+        default:
+            throw std::out_of_range("nodes have 1 to 7 words, not " + std::to_string(words));
     }
 }
 

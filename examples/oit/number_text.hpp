@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <charconv>
+#include <concepts>
 #include <cstdint>
 #include <iomanip>
 #include <sstream>
@@ -14,6 +17,13 @@ namespace oit {
     std::string digits = std::to_string(value);
     for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, ",");
     return digits;
+}
+
+/// The fewest digits that are read as this number again: 0.35
+[[nodiscard]] std::string shortest(std::floating_point auto value) {
+    std::array<char, 32> digits;
+    const auto [end, error] = std::to_chars(digits.begin(), digits.end(), value);
+    return {digits.begin(), end};
 }
 
 [[nodiscard]] inline std::string fixed(double value, int decimals) {

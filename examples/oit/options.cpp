@@ -8,6 +8,7 @@
 
 #include "command_line.hpp"
 #include "input_error.hpp"
+#include "number_text.hpp"
 #include "setting.hpp"
 
 namespace oit {
@@ -72,9 +73,12 @@ void read_memory(const std::string& text, Options& options) {
 
 Options parse_options(int count, const char* const* arguments) {
     Options options;
-    std::string method = options.method, layers = "all", epsilon = "0", format = "float", budget,
-                check_every = "1", until, reduce = "1", memory, turn = "0",
-                out = options.out.string(), json, frames = "5";
+    std::string method = options.method, format(name_of(options.quality.format)), layers = "all",
+                epsilon = shortest(options.quality.epsilon);
+    std::string reduce = std::to_string(options.quality.reduce), memory, budget,
+                check_every = std::to_string(options.check_every);
+    std::string until, turn = shortest(options.turn_degrees),
+                       frames = std::to_string(options.frames), out = options.out.string(), json;
     CLI::App app{"Draws a mesh or a scene with order-independent transparency.", "cellist-oit"};
     const auto add = [&](const char* name, std::string& value, const char* what, const char* type) {
         add_option(app, name, value, what, type);
@@ -100,7 +104,7 @@ Options parse_options(int count, const char* const* arguments) {
                  "compare with a rendering in double precision on the CPU");
     add("--out", out, "picture to write", "FILE.png");
     add("--json", json, "write the figures to this file", "FILE");
-    add("--frames", frames, "timed frames, after one that is not; times are medians", "N");
+    add("--frames", frames, "timed frames, after those that warm up; times are medians", "N");
     app.footer(help_on_tables());
     if (const auto help = support::parse_command_line(app, count, arguments)) {
         options.help = true;

@@ -24,7 +24,6 @@ public:
     /// The frame whose transparent surfaces are drawn.
     [[nodiscard]] const Frame& reduced() const { return reduced_; }
 
-    void move_to(double time) { source_.move_to(time); }
     /// Takes the frame's views and time, which may have changed. Blocks.
     void follow();
     void transform() { source_.transform(); }

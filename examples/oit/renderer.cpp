@@ -57,6 +57,12 @@ bool Renderer::complete() {
     return method_->complete() && drawn;
 }
 
+void Renderer::warm_up() {
+    // The first frame finds out how much room the second makes.
+    draw();
+    draw();
+}
+
 double Renderer::draw() {
     device_.finish();
     const support::Stopwatch stopwatch;
@@ -67,12 +73,6 @@ double Renderer::draw() {
     } while (!complete());
     device_.finish();
     return stopwatch.ms();
-}
-
-double Renderer::draw_at(double time) {
-    if (reduction_) reduction_->move_to(time);
-    source_.move_to(time);
-    return draw();
 }
 
 double Renderer::draw_changed() {

@@ -28,16 +28,16 @@ public:
     Renderer(const cellist::Device& device, const Frame& frame,
              const MethodInfo& method = method_named("linked"));
 
+    /// Draws until frames are of one kind: builds the kernels' last variants and grows pools.
+    /// Blocks.
+    void warm_up();
     /// Draws once, and blocks until the image is there: milliseconds from clearing to the image. Throws
     /// InputError where the method needs more than Frame::memory_bytes.
     double draw();
-    /// The same at another time of the scene, in seconds.
-    double draw_at(double time);
-    /// The same with a wait behind each pass, so that a frame takes longer.
-    PassTimes draw_by_pass();
-
     /// The same where the frame has another time, or other views of the same size.
     double draw_changed();
+    /// The same as draw() with a wait behind each pass, so that a frame takes longer.
+    PassTimes draw_by_pass();
 
     /// The linear image, eye by eye, row by row from the top.
     [[nodiscard]] std::vector<cl_float4> image() const { return picture().download(); }

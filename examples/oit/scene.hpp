@@ -1,6 +1,5 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include <glm/mat4x4.hpp>
@@ -28,7 +27,6 @@ struct Instance {
 /// What there is to draw: inside of the unit sphere, but for the floor. Instances of opaque materials
 /// hide what lies behind them.
 struct Scene {
-    std::string name = {};
     std::vector<Model> models = {};
     std::vector<Material> materials = {};
     std::vector<Instance> instances = {};

@@ -34,13 +34,17 @@ std::string text(const Setting& setting) {
     return out.str();
 }
 
-std::vector<Setting> settings_for(const Frame& frame, std::uint64_t most_layers) {
-    Quality base = frame.quality;
-    base.format = NodeFormat::float32;
-    base.layers.reset();
-    base.epsilon = 0;
-    base.size.reset();
+Setting exact_setting(const Quality& quality) {
+    Setting setting{&method_named("linked"), quality};
+    setting.quality.format = NodeFormat::float32;
+    setting.quality.layers.reset();
+    setting.quality.epsilon = 0;
+    setting.quality.size.reset();
+    return setting;
+}
 
+std::vector<Setting> settings_for(const Frame& frame, std::uint64_t most_layers) {
+    const Quality base = exact_setting(frame.quality).quality;
     std::vector<Setting> settings;
     const auto add = [&](const MethodInfo& method, auto Quality::*member, auto value) {
         Quality quality = base;
@@ -57,7 +61,7 @@ std::vector<Setting> settings_for(const Frame& frame, std::uint64_t most_layers)
             add(method, &Quality::size, std::nullopt);
         else
             for (const std::uint32_t size : method.sizes) add(method, &Quality::size, size);
-        if (method.name != "linked") continue;
+        if (!method.cuts) continue;
         for (const std::uint32_t layers : layer_counts)
             if (layers < most_layers) add(method, &Quality::layers, layers);
         for (const float epsilon : epsilons) add(method, &Quality::epsilon, epsilon);

@@ -21,10 +21,14 @@ struct Setting {
 /// The options of cellist-oit that give a setting: "--method linked --layers 8".
 [[nodiscard]] std::string text(const Setting& setting);
 
+/// All layers in nodes of floats with the method `linked`: what other settings are a trade of.
+/// Samples, resolve, ranges and scale of depth are those of `quality`.
+[[nodiscard]] Setting exact_setting(const Quality& quality);
+
 /// The settings worth comparing for a frame, those that a method refuses left out. Samples, resolve,
-/// ranges and scale of depth are those of the frame. Exact methods come in each node format; `linked`
-/// also with 1, 2, 4 ... 64 nearest layers, as long as that is fewer than `most_layers`, the most in
-/// any pixel, and with early ends; approximations in each of their sizes.
+/// ranges and scale of depth are those of the frame. Exact methods come in each node format; those
+/// that cut also with 1, 2, 4 ... 64 nearest layers, as long as that is fewer than `most_layers`,
+/// the most in any pixel, and with early ends; approximations in each of their sizes.
 [[nodiscard]] std::vector<Setting> settings_for(const Frame& frame, std::uint64_t most_layers);
 
 /// The frame that a setting draws instead of this one.

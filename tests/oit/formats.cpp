@@ -86,6 +86,16 @@ TEST_CASE("a node has no more words than the frame needs") {
     }
 }
 
+TEST_CASE("there are types of nodes of 1 to 7 words, and no others") {
+    const auto bytes_of = [](std::uint32_t words) {
+        return oit::with_node_type(
+            words, []<class Node>(const Node*) -> std::size_t { return sizeof(Node); });
+    };
+    for (std::uint32_t words = 1; words <= 7; ++words) CHECK(bytes_of(words) == 4 * words);
+    CHECK_THROWS_AS(bytes_of(0), std::out_of_range);
+    CHECK_THROWS_AS(bytes_of(8), std::out_of_range);
+}
+
 TEST_CASE("every format is as accurate as its bound") {
     for (const oit::NodeFormatName& format : oit::node_formats)
         for (const oit::DepthScale scale : {oit::DepthScale::linear, oit::DepthScale::reversed})

@@ -1,5 +1,7 @@
 // Every method of the table draws what it promises.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 
 #include <glm/common.hpp>
@@ -10,6 +12,7 @@
 #include "method.hpp"
 #include "oit/support/procedural.hpp"
 #include "renderer.hpp"
+#include "scenes.hpp"
 #include "support/catch.hpp"
 #include "support/device.hpp"
 
@@ -106,6 +109,31 @@ TEST_CASE("approximations are exact where there is one layer, and near where the
             };
             CHECK(psnr(many, true) > 80);
             CHECK(psnr(many, false) > 22);
+        }
+    }
+}
+
+// The mean of layers of one colour is that colour, whatever their weights are.
+TEST_CASE("a hundred layers of one bright colour are as bright as each of them") {
+    for (const float brightness : {1.0F, 1e6F, 1e7F}) {
+        oit::Scene scene = oit::find_scene("extreme-underflow")->make(0);
+        for (oit::Material& material : scene.materials)
+            for (cl_float& channel : material.front_tint) channel = brightness;
+        const oit::Frame frame{.scene = scene,
+                               .views = {support::frame_unit_sphere({0, 0}, 40, 30)}};
+        const oit::Reference reference = oit::draw_reference(frame);
+        REQUIRE(reference.most_layers() == 100);
+        for (const char* name : {"weighted", "stochastic", "moments"}) {
+            INFO(name << ", colours of " << brightness);
+            oit::Renderer renderer(device(), frame, oit::method_named(name));
+            renderer.draw();
+            const std::vector<cl_float4> image = renderer.image();
+            double largest = 0;
+            for (std::size_t p = 0; p < image.size(); ++p)
+                for (int c = 0; c < 3; ++c)
+                    largest = std::max(largest, std::abs(static_cast<double>(image[p].s[c]) -
+                                                         reference.image[p][c]));
+            CHECK(largest < 1e-4 * static_cast<double>(renderer.needs().colour_max));
         }
     }
 }

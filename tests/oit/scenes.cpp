@@ -21,9 +21,10 @@ oit::Scene scene_named(const std::string& name) {
 }
 
 // Draws the scene and requires that no pixel differs from the reference by more than 1/255, unless
-// float cannot tell depths apart. Returns the length of the longest list.
+// float cannot tell depths apart, which is so in a part `most_over` of the pixels at most. Returns
+// the length of the longest list.
 std::uint64_t require_accurate(const oit::Scene& scene, int width, int height,
-                               const support::Orbit& orbit = {60, 25}) {
+                               const support::Orbit& orbit = {60, 25}, double most_over = 1e-4) {
     const oit::Frame frame{.scene = scene,
                            .views = {support::frame_unit_sphere(orbit, width, height)}};
     oit::Renderer renderer(device(), frame);
@@ -34,10 +35,8 @@ std::uint64_t require_accurate(const oit::Scene& scene, int width, int height,
                                 << 255 * comparison.max_abs_error << "/255");
     CHECK(comparison.pixels_with_other_count == 0);
     CHECK(comparison.pixels_explained == comparison.pixels_over);
-    // Surfaces in one plane have an order that float does not know, all over.
-    if (scene.name != "extreme-coplanar")
-        CHECK(static_cast<double>(comparison.pixels_over) <=
-              1e-4 * static_cast<double>(comparison.pixels));
+    CHECK(static_cast<double>(comparison.pixels_over) <=
+          most_over * static_cast<double>(comparison.pixels));
     return renderer.method().lengths()->longest;
 }
 
@@ -76,15 +75,14 @@ TEST_CASE("gearworks has 602,000 triangles, 254,000 of them transparent, and up 
 
 TEST_CASE("gearworks moves, and the reference with it") {
     const oit::Scene scene = scene_named("gearworks");
-    const oit::Frame frame{.scene = scene, .views = {support::frame_unit_sphere({25, 8}, 160, 90)}};
+    oit::Frame frame{.scene = scene, .views = {support::frame_unit_sphere({25, 8}, 160, 90)}};
     oit::Renderer renderer(device(), frame);
     renderer.draw();
     const std::vector<cl_float4> before = renderer.image();
-    renderer.draw_at(1.5);
+    frame.time = 1.5;
+    renderer.draw_changed();
     const std::vector<cl_float4> after = renderer.image();
-    oit::Frame later = frame;
-    later.time = 1.5;
-    const oit::Reference reference = oit::draw_reference(later);
+    const oit::Reference reference = oit::draw_reference(frame);
     CHECK(oit::compare(reference, after, {}).pixels_over == 0);
     CHECK(oit::compare(reference, before, {}).pixels_over > 100);
 }
@@ -100,8 +98,10 @@ TEST_CASE("scenes at the limits of numbers are drawn as accurately as others") {
     for (const oit::SceneInfo& info : oit::scenes()) {
         if (!info.name.starts_with("extreme-")) continue;
         INFO(info.name);
+        // Surfaces in one plane have an order that float does not know, all over.
+        const double most_over = info.name == "extreme-coplanar" ? 1 : 1e-4;
         for (const support::Orbit& orbit : {support::Orbit{0, 0}, {-130, 35}})
-            require_accurate(info.make(0.35F), 96, 80, orbit);
+            require_accurate(info.make(0.35F), 96, 80, orbit, most_over);
     }
 }
 

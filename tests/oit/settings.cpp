@@ -77,6 +77,22 @@ TEST_CASE("settings keep a frame's samples, and nothing that it gives up") {
     for (const oit::Setting& setting : settings) CHECK(setting.quality.samples == 4);
 }
 
+TEST_CASE("the exact setting is the first, and nothing of a frame's but its samples and depths") {
+    const oit::Scene scene = knot();
+    const oit::Quality quality{.samples = 4,
+                               .resolve = oit::Resolve::per_sample,
+                               .depth_range = true,
+                               .format = oit::NodeFormat::rgba8,
+                               .depth_scale = oit::DepthScale::reversed,
+                               .layers = 3,
+                               .epsilon = 0.1F,
+                               .size = 8};
+    const oit::Setting exact = oit::exact_setting(quality);
+    CHECK(oit::text(exact) ==
+          "--method linked --depth-scale reversed --samples 4 --resolve sample --depth-range");
+    CHECK(oit::text(settings_for(frame_of(scene, quality), 20).front()) == oit::text(exact));
+}
+
 TEST_CASE("the text of a setting is read as that setting") {
     const oit::Scene scene = knot();
     const oit::Frame frame = frame_of(
@@ -93,6 +109,20 @@ TEST_CASE("the text of a setting is read as that setting") {
               oit::text(setting));
         CHECK(options.quality.epsilon == setting.quality.epsilon);
     }
+}
+
+TEST_CASE("options that are not given are as they were") {
+    const char* const arguments[] = {"cellist-oit", "smoke"};
+    const oit::Options read = oit::parse_options(2, arguments), usual;
+    CHECK(read.quality == usual.quality);
+    CHECK(read.alpha == usual.alpha);
+    CHECK(read.orbit.azimuth_degrees == usual.orbit.azimuth_degrees);
+    CHECK(read.orbit.elevation_degrees == usual.orbit.elevation_degrees);
+    CHECK(read.width == usual.width);
+    CHECK(read.frames == usual.frames);
+    CHECK(read.check_every == usual.check_every);
+    CHECK_FALSE(read.blend);
+    CHECK_FALSE(read.eye_separation);
 }
 
 TEST_CASE("larger sizes of an approximation are not less accurate") {

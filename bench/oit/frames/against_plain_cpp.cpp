@@ -33,6 +33,7 @@ void measure_plain_cpp(Run& run) {
         PlainCpp plain(stage.frame);
         const double psnr_db = check_picture(plain, stage.frame);
         oit::Renderer renderer(run.device(), stage.frame);
+        renderer.warm_up();
         const std::array<std::function<double()>, 2> drawings{[&] { return plain.draw(); },
                                                               [&] { return renderer.draw(); }};
         const std::vector<Samples> times = run.draw_by_turns(drawings);

@@ -7,12 +7,13 @@
 #include "method.hpp"
 #include "oit/frames/run.hpp"
 #include "renderer.hpp"
+#include "setting.hpp"
 
 namespace bench {
 namespace {
 
 struct Contender {
-    std::string_view method;
+    const oit::MethodInfo* method;
     std::unique_ptr<oit::Renderer> renderer;
 };
 
@@ -23,8 +24,8 @@ std::vector<Contender> contenders(Run& run, const Stage& stage) {
         if (!method.exact) continue;
         try {
             auto renderer = std::make_unique<oit::Renderer>(run.device(), stage.frame, method);
-            renderer->draw();
-            result.push_back({method.name, std::move(renderer)});
+            renderer->warm_up();
+            result.push_back({&method, std::move(renderer)});
         } catch (const std::exception& error) {
             run.leave_out("exact_methods/" + std::string(method.name), error.what());
         }
@@ -43,13 +44,14 @@ void measure_exact_methods(Run& run) {
             drawings.emplace_back([&] { return contender.renderer->draw(); });
         const std::vector<Samples> times = run.draw_by_turns(drawings);
 
-        double linked = 0;
+        const oit::MethodInfo* const linked = oit::exact_setting(stage.frame.quality).method;
+        double linked_time = 0;
         for (std::size_t i = 0; i < all.size(); ++i)
-            if (all[i].method == "linked") linked = times[i].median;
+            if (all[i].method == linked) linked_time = times[i].median;
         std::vector<Run::Figure> figures;
         for (std::size_t i = 0; i < all.size(); ++i) {
-            Run::Figure figure{{"method", all[i].method},
-                               {"times_linked", times[i].median / linked}};
+            Run::Figure figure{{"method", all[i].method->name},
+                               {"times_linked", times[i].median / linked_time}};
             figure.update(to_json(times[i]));
             figures.push_back(std::move(figure));
         }

@@ -46,6 +46,7 @@ void measure_fewer_layers(Run& run) {
             oit::Quality quality = stage.frame.quality;
             quality.layers = layers;
             drawn.push_back(std::make_unique<Drawing>(run.device(), stage.frame, quality));
+            drawn.back()->renderer.warm_up();
             drawings.emplace_back([&last = *drawn.back()] { return last.renderer.draw(); });
         };
         add({});

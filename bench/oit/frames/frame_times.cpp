@@ -16,6 +16,7 @@ void measure_frame_times(Run& run) {
         scene_case("gearworks")};
     run.measure("frame_times", cases, [&](const Stage& stage) -> std::vector<Run::Figure> {
         oit::Renderer renderer(run.device(), stage.frame);
+        renderer.warm_up();
         const std::function<double()> draw = [&] { return renderer.draw(); };
         Run::Figure figure = to_json(run.draw_by_turns({&draw, 1}).front());
         if (const auto lengths = renderer.method().lengths()) {

@@ -10,6 +10,7 @@
 #include "command_line.hpp"
 #include "image.hpp"
 #include "input_error.hpp"
+#include "number_text.hpp"
 #include "oit/frames/run.hpp"
 
 namespace {
@@ -22,7 +23,8 @@ struct Options : bench::RunOptions {
 
 Options parse(int count, const char* const* arguments) {
     Options options;
-    std::string size = "1", frames = std::to_string(options.frames), meshes, json;
+    std::string size = oit::shortest(options.size), frames = std::to_string(options.frames), meshes,
+                json;
     CLI::App app{
         "Measures whole frames, exact methods, fewer layers, plain C++ and the accuracy of "
         "all layers.",
@@ -33,7 +35,7 @@ Options parse(int count, const char* const* arguments) {
     oit::add_option(app, "--filter", options.filter,
                     "only what matches this regular expression: SECTION/CASE", "RE");
     oit::add_option(app, "--size", size, "factor of the sides of all images", "F");
-    oit::add_option(app, "--frames", frames, "timed frames of each kind, after two that are not",
+    oit::add_option(app, "--frames", frames, "timed frames of each kind, after those that warm up",
                     "N");
     app.footer("Sections: frame_times, exact_methods, fewer_layers, plain_cpp, accuracy\n");
     if (const auto help = support::parse_command_line(app, count, arguments)) {

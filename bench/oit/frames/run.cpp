@@ -99,8 +99,6 @@ std::vector<Samples> Run::draw_by_turns(std::span<const std::function<double()>>
         for (const std::function<double()>& draw : drawings) seconds.push_back(1e-3 * draw());
         return seconds;
     };
-    round();
-    round();
     return sample({.least = options_.frames, .most = options_.frames}, round);
 }
 

@@ -64,9 +64,8 @@ public:
     /// Notes what cannot be measured, and why.
     void leave_out(const std::string& what, const std::string& reason);
 
-    /// The times of drawings, each of which returns its milliseconds. They draw by turns, so that a slow
-    /// spell of the machine meets all of them, after two times that do not count: these build the
-    /// kernels' last variants and grow pools.
+    /// The times of drawings that are warmed up, each of which returns its milliseconds. They draw
+    /// by turns, so that a slow spell of the machine meets all of them.
     [[nodiscard]] std::vector<Samples> draw_by_turns(
         std::span<const std::function<double()>> drawings) const;
 

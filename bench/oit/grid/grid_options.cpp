@@ -5,6 +5,7 @@
 #include "command_line.hpp"
 #include "frame_options.hpp"
 #include "image.hpp"
+#include "number_text.hpp"
 
 namespace oit {
 namespace {
@@ -18,7 +19,7 @@ int read_side(const std::string& text) {
 GridOptions parse_grid_options(int count, const char* const* arguments) {
     GridOptions options;
     std::string size = std::to_string(options.width) + "x" + std::to_string(options.height),
-                runs = std::to_string(options.runs), cost = "1.1", meshes, json;
+                runs = std::to_string(options.runs), cost = shortest(options.cost), meshes, json;
     CLI::App app{
         "Draws ten scenes and views within three budgets each, as cellist-oit --budget does, and "
         "looks for the cheapest setting that keeps the budget among all there are, by drawing all "

@@ -12,7 +12,6 @@ namespace {
 Scene make(float alpha) {
     constexpr int side = 4;
     Scene scene;
-    scene.name = "rings";
     scene.models.push_back({.mesh = ring(0.2, 0.05, 48, 16)});
     scene.materials.push_back(glass(alpha));
     for (int i = 0; i < side * side * side; ++i) {

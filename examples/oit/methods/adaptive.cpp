@@ -22,7 +22,7 @@ std::unique_ptr<Method> make(FragmentSource& source) {
 const MethodRegistration adaptive(
     {.name = "adaptive",
      .summary = "transmittance as a function of 8 or other steps (Salvi et al. 2011)",
-     .position = 11,
+     .position = 110,
      .exact = false,
      .sizes = sizes,
      .refusal = accumulating_refusal,

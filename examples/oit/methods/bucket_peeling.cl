@@ -7,7 +7,8 @@
 //   counts   fragments in each
 //   nodes    the layers that were taken
 //   state    what has been blended
-// The passes: OIT_FIND_RANGE, then OIT_FIND_KEYS and OIT_TAKE by turns.
+// The passes: with OIT_FIND_RANGE; then by turns with OIT_FIND_KEYS, and with neither, which takes
+// the layers.
 
 static inline uint oit_bucket(float depth, float least, float greatest) {
     const float part = (depth - least) / fmax(greatest - least, 1e-30f);

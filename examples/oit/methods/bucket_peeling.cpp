@@ -26,22 +26,20 @@ std::size_t buckets_of(const FragmentSource& source) {
     return source.frame().quality.size.value_or(default_buckets);
 }
 
-std::string text(const FragmentSource& source, const std::string& define) {
-    return "#define OIT_BUCKETS " + std::to_string(buckets_of(source)) + "\n#define " + define +
-           "\n" + peeling_text(kernels::bucket_peeling_cl);
+std::string text(const FragmentSource& source, const std::string& defines = {}) {
+    return defines + "#define OIT_BUCKETS " + std::to_string(buckets_of(source)) + "\n" +
+           peeling_text(kernels::bucket_peeling_cl);
 }
 
 class BucketPeeling : public Method {
 public:
     explicit BucketPeeling(FragmentSource& source)
         : source_(source),
-          find_range_(source.pass(text(source, "OIT_FIND_RANGE"), "bucket_peeling.cl")),
-          find_keys_(source.pass(text(source, "OIT_FIND_KEYS"), "bucket_peeling.cl")),
-          take_(source.pass(text(source, "OIT_TAKE"), "bucket_peeling.cl")),
-          peel_(source.screen_kernel(text(source, "OIT_PEEL"), "bucket_peeling.cl",
-                                     "oit_peel_buckets")),
-          finish_(source.screen_kernel(text(source, "OIT_PEEL"), "bucket_peeling.cl",
-                                       "oit_finish_peeling")),
+          find_range_(source.pass(text(source, "#define OIT_FIND_RANGE\n"), "bucket_peeling.cl")),
+          find_keys_(source.pass(text(source, "#define OIT_FIND_KEYS\n"), "bucket_peeling.cl")),
+          take_(source.pass(text(source), "bucket_peeling.cl")),
+          peel_(source.screen_kernel(text(source), "bucket_peeling.cl", "oit_peel_buckets")),
+          finish_(source.screen_kernel(text(source), "bucket_peeling.cl", "oit_finish_peeling")),
           begin_(source.device(), source.frame().pixels()),
           range_(source.device(), source.frame().pixels()),
           keys_(source.device(), buckets_of(source) * source.frame().pixels()),
@@ -99,7 +97,7 @@ std::uint64_t passes(const SceneMeasure&, const Quality&) { return 3; }
 const MethodRegistration bucket_peeling(
     {.name = "bucket_peeling",
      .summary = "a layer of each of 8 or other ranges of depth a pass (Liu et al. 2009)",
-     .position = 6,
+     .position = 60,
      .exact = true,
      .sizes = sizes,
      .refusal = refusal,

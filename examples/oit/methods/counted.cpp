@@ -11,7 +11,7 @@ std::unique_ptr<Method> make(FragmentSource& source) {
 const MethodRegistration counted(
     {.name = "counted",
      .summary = "lists behind one another, in two passes (prefix sums)",
-     .position = 2,
+     .position = 20,
      .exact = true,
      .refusal = refuses_nothing,
      .make = make,

@@ -72,7 +72,7 @@ std::uint64_t passes(const SceneMeasure& scene, const Quality&) {
 const MethodRegistration dual_peeling(
     {.name = "dual_peeling",
      .summary = "the nearest and the farthest layer a pass (Bavoil, Myers 2008)",
-     .position = 5,
+     .position = 50,
      .exact = true,
      .refusal = refusal,
      .make = make_peeling<DualPeeling>,

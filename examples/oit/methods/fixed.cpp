@@ -11,7 +11,7 @@ std::unique_ptr<Method> make(FragmentSource& source) {
 const MethodRegistration fixed(
     {.name = "fixed",
      .summary = "slots for each pixel, as many as the longest list (FreePipe, Liu et al. 2010)",
-     .position = 3,
+     .position = 30,
      .exact = true,
      .refusal = refuses_nothing,
      .make = make,

@@ -31,7 +31,7 @@ std::optional<PictureError> bound(const SceneMeasure& scene, const Quality& qual
 const MethodRegistration kbuffer(
     {.name = "kbuffer",
      .summary = "the 8 nearest layers, or as many as asked for (Bavoil et al. 2007)",
-     .position = 7,
+     .position = 70,
      .exact = false,
      .sizes = sizes,
      .refusal = refuses_nothing,

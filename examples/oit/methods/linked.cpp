@@ -10,8 +10,9 @@ std::unique_ptr<Method> make(FragmentSource& source) {
 
 const MethodRegistration linked({.name = "linked",
                                  .summary = "a linked list for each pixel (Yang et al. 2010)",
-                                 .position = 1,
+                                 .position = 10,
                                  .exact = true,
+                                 .cuts = true,
                                  .refusal = refuses_nothing,
                                  .make = make,
                                  .bound = bound_of_layers});

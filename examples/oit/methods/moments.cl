@@ -79,7 +79,7 @@ static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitPlace* 
             power *= z;
         }
 #else
-        oit_accumulate_colour(sums + 4 * sample, fragment->colour,
+        oit_accumulate_colour(sums + 4 * sample, frame, fragment->colour,
                               fragment->alpha * oit_reaches(moments + 5 * sample, z));
 #endif
     }
@@ -93,7 +93,8 @@ kernel void oit_resolve_moments(global const long* moments, global const long* s
     OitLights lights = oit_lights();
     for (int i = 0; i < OIT_LIGHTS; ++i) {
         const size_t sample = pixel.pixel * OIT_SAMPLES + pixel.first_sample + i;
-        oit_set_light(&lights.of[i], sums + 4 * sample, oit_sum(&moments[5 * sample]));
+        oit_set_light(&lights.of[i], &pixel.frame, sums + 4 * sample,
+                      oit_sum(&moments[5 * sample]));
     }
     oit_write(OIT_SCREEN_PASS, &pixel, &lights);
 }

@@ -5,17 +5,17 @@
 namespace oit {
 namespace {
 
-std::string text(const std::string& define) {
-    return "#define " + define + "\n" + accumulating_text(kernels::moments_cl);
+std::string text(const std::string& defines = {}) {
+    return defines + accumulating_text(kernels::moments_cl);
 }
 
 class Moments : public Method {
 public:
     explicit Moments(FragmentSource& source)
         : source_(source),
-          sum_moments_(source.pass(text("OIT_MOMENTS"), "moments.cl")),
-          add_(source.pass(text("OIT_ADD"), "moments.cl")),
-          resolve_(source.screen_kernel(text("OIT_RESOLVE"), "moments.cl", "oit_resolve_moments")),
+          sum_moments_(source.pass(text("#define OIT_MOMENTS\n"), "moments.cl")),
+          add_(source.pass(text(), "moments.cl")),
+          resolve_(source.screen_kernel(text(), "moments.cl", "oit_resolve_moments")),
           moments_(source.device(), 5 * source.samples()),
           sums_(source.device(), 4 * source.samples()) {}
 
@@ -42,7 +42,7 @@ private:
 const MethodRegistration moments(
     {.name = "moments",
      .summary = "transmittance from four moments of depth (Muenstermann et al. 2018)",
-     .position = 10,
+     .position = 100,
      .exact = false,
      .refusal = accumulating_refusal,
      .make = make_accumulating<Moments>,

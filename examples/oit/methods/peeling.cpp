@@ -62,7 +62,7 @@ std::uint64_t passes(const SceneMeasure& scene, const Quality& quality) {
 const MethodRegistration peeling(
     {.name = "peeling",
      .summary = "depth peeling: the scene is drawn once for each layer (Everitt 2001)",
-     .position = 4,
+     .position = 40,
      .exact = true,
      .refusal = peeling_refusal,
      .make = make_peeling<Peeling>,

@@ -39,7 +39,7 @@ static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitPlace* 
         for (uint trial = 0; trial < OIT_TRIALS; ++trial)
             if (as_uint(fragment->depth) <= depths[sample * OIT_TRIALS + trial]) ++seen;
         volatile global long* own = sums + 5 * sample;
-        oit_accumulate_colour(own, fragment->colour,
+        oit_accumulate_colour(own, frame, fragment->colour,
                               fragment->alpha * (float)seen / (float)OIT_TRIALS);
         oit_accumulate(&own[4], oit_absorbance(fragment->alpha));
 #endif
@@ -54,7 +54,7 @@ kernel void oit_resolve_stochastic(global const long* sums, OIT_SCREEN) {
     OitLights lights = oit_lights();
     for (int i = 0; i < OIT_LIGHTS; ++i) {
         global const long* own = sums + 5 * (pixel.pixel * OIT_SAMPLES + pixel.first_sample + i);
-        oit_set_light(&lights.of[i], own, oit_sum(&own[4]));
+        oit_set_light(&lights.of[i], &pixel.frame, own, oit_sum(&own[4]));
     }
     oit_write(OIT_SCREEN_PASS, &pixel, &lights);
 }

@@ -17,19 +17,18 @@ std::uint32_t trials_of(const FragmentSource& source) {
     return source.frame().quality.size.value_or(default_trials);
 }
 
-std::string text(const FragmentSource& source, const std::string& define) {
-    return "#define OIT_TRIALS " + std::to_string(trials_of(source)) + "\n#define " + define +
-           "\n" + accumulating_text(kernels::stochastic_cl);
+std::string text(const FragmentSource& source, const std::string& defines = {}) {
+    return defines + "#define OIT_TRIALS " + std::to_string(trials_of(source)) + "\n" +
+           accumulating_text(kernels::stochastic_cl);
 }
 
 class Stochastic : public Method {
 public:
     explicit Stochastic(FragmentSource& source)
         : source_(source),
-          hide_(source.pass(text(source, "OIT_HIDE"), "stochastic.cl")),
-          add_(source.pass(text(source, "OIT_ADD"), "stochastic.cl")),
-          resolve_(source.screen_kernel(text(source, "OIT_RESOLVE"), "stochastic.cl",
-                                        "oit_resolve_stochastic")),
+          hide_(source.pass(text(source, "#define OIT_HIDE\n"), "stochastic.cl")),
+          add_(source.pass(text(source), "stochastic.cl")),
+          resolve_(source.screen_kernel(text(source), "stochastic.cl", "oit_resolve_stochastic")),
           depths_(source.device(), trials_of(source) * source.samples()),
           sums_(source.device(), 5 * source.samples()) {}
 
@@ -56,7 +55,7 @@ private:
 const MethodRegistration stochastic(
     {.name = "stochastic",
      .summary = "8 or other random trials of which fragments hide others (Enderton et al. 2010)",
-     .position = 9,
+     .position = 90,
      .exact = false,
      .sizes = sizes,
      .refusal = accumulating_refusal,

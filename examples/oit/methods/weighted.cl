@@ -17,7 +17,7 @@ static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitPlace* 
     for (int s = 0; s < OIT_SAMPLES; ++s) {
         if (!(fragment->coverage >> s & 1)) continue;
         volatile global long* own = sums + 5 * (place->pixel * OIT_SAMPLES + s);
-        oit_accumulate_colour(own, fragment->colour, weight);
+        oit_accumulate_colour(own, frame, fragment->colour, weight);
         oit_accumulate(&own[4], oit_absorbance(fragment->alpha));
     }
 }
@@ -30,7 +30,7 @@ kernel void oit_resolve_weighted(global const long* sums, OIT_SCREEN) {
     OitLights lights = oit_lights();
     for (int i = 0; i < OIT_LIGHTS; ++i) {
         global const long* own = sums + 5 * (pixel.pixel * OIT_SAMPLES + pixel.first_sample + i);
-        oit_set_light(&lights.of[i], own, oit_sum(&own[4]));
+        oit_set_light(&lights.of[i], &pixel.frame, own, oit_sum(&own[4]));
     }
     oit_write(OIT_SCREEN_PASS, &pixel, &lights);
 }

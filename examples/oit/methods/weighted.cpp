@@ -33,7 +33,7 @@ private:
 const MethodRegistration weighted(
     {.name = "weighted",
      .summary = "a mean weighted by opacity and nearness, one pass (McGuire, Bavoil 2013)",
-     .position = 8,
+     .position = 80,
      .exact = false,
      .refusal = accumulating_refusal,
      .make = make_accumulating<Weighted>});

@@ -11,8 +11,6 @@ namespace {
 // Squares that face the eye of the view (0, 0).
 class Squares {
 public:
-    explicit Squares(std::string name) { scene_.name = std::move(name); }
-
     void set_material(const Material& material) { scene_.materials.push_back(material); }
 
     // From (x, y) to (x + side, y + side), at z.
@@ -47,7 +45,7 @@ constexpr float least_alpha = 0x1p-24F;
 
 // Every opacity at an end of its range, over every other.
 Scene alphas(float) {
-    Squares squares("extreme-alphas");
+    Squares squares;
     const float ends[] = {0, 1, least_alpha, 1 - least_alpha};
     for (int i = 0; i < 4; ++i) {
         squares.set_material(glass(ends[i]));
@@ -61,7 +59,7 @@ Scene alphas(float) {
 
 // 10,000 layers in some pixels.
 Scene layers(float) {
-    Squares squares("extreme-layers");
+    Squares squares;
     squares.set_material(glass(1e-3F));
     squares.add(-0.1F, -0.1F, 0.2F, 0);
     for (int i = 1; i < 10'000; ++i) squares.repeat({0, 0, -0.9 + 1.8e-4 * i});
@@ -70,7 +68,7 @@ Scene layers(float) {
 
 // So much glass that the light that passes is less than any float.
 Scene underflow(float) {
-    Squares squares("extreme-underflow");
+    Squares squares;
     squares.set_material(glass(0.9F));
     squares.add(-0.5F, -0.5F, 1, 0);
     for (int i = 1; i < 100; ++i) squares.repeat({0, 0, -0.9 + 0.018 * i});
@@ -79,7 +77,7 @@ Scene underflow(float) {
 
 // Colours of 10,000 behind and in front of dim ones.
 Scene bright(float alpha) {
-    Squares squares("extreme-bright");
+    Squares squares;
     for (int i = 0; i < 5; ++i) {
         Material material = glass(alpha);
         for (int c = 0; c < 3; ++c)
@@ -93,7 +91,7 @@ Scene bright(float alpha) {
 
 // Squares in one plane, and the same square twice.
 Scene coplanar(float alpha) {
-    Squares squares("extreme-coplanar");
+    Squares squares;
     for (int i = 0; i < 3; ++i) {
         Material material = glass(alpha);
         material.front_tint[i] = 1;
@@ -107,7 +105,7 @@ Scene coplanar(float alpha) {
 
 // Triangles without width, smaller than a pixel, and larger than the screen.
 Scene slivers(float alpha) {
-    Squares squares("extreme-slivers");
+    Squares squares;
     squares.set_material(glass(alpha));
     support::Mesh mesh;
     const auto add = [&](glm::vec3 a, glm::vec3 b, glm::vec3 c) {
@@ -132,7 +130,7 @@ Scene slivers(float alpha) {
 
 // Corners so far away that their products are near the largest float.
 Scene far(float alpha) {
-    Squares squares("extreme-far");
+    Squares squares;
     squares.set_material(glass(alpha));
     squares.add(-1e30F, -1e30F, 2e30F, -0.5F);
     squares.add(-1e20F, 0, 1e20F, 0);
@@ -142,7 +140,7 @@ Scene far(float alpha) {
 
 // Vertices that are no numbers are left out, with the triangles around them.
 Scene nan(float alpha) {
-    Squares squares("extreme-nan");
+    Squares squares;
     squares.set_material(glass(alpha));
     support::Mesh mesh;
     for (int i = 0; i < 12; ++i) {
@@ -159,10 +157,10 @@ Scene nan(float alpha) {
 }
 
 // Nothing at all, and nothing but opaque surfaces.
-Scene nothing(float) { return Squares("extreme-nothing").take(); }
+Scene nothing(float) { return {}; }
 
 Scene opaque(float) {
-    Squares squares("extreme-opaque");
+    Squares squares;
     Material material = glass(1);
     material.blend = static_cast<cl_uint>(Blend::opaque);
     squares.set_material(material);

@@ -50,7 +50,6 @@ Material surface(const std::array<float, 3>& tint, float gloss, float alpha, Ble
 class Builder {
 public:
     explicit Builder(float alpha) {
-        scene_.name = "gearworks";
         const std::array<std::array<float, 3>, 4> tints{{{0.04F, 0.55F, 0.85F},
                                                          {0.90F, 0.10F, 0.32F},
                                                          {0.95F, 0.55F, 0.05F},

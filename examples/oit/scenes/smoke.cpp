@@ -123,7 +123,6 @@ void fit(Scene& scene) {
 
 Scene make(float alpha) {
     Scene scene;
-    scene.name = "smoke";
     const float tints[surfaces][3] = {
         {0.75F, 0.72F, 0.68F}, {0.80F, 0.38F, 0.10F}, {0.16F, 0.42F, 0.70F}, {0.62F, 0.60F, 0.58F}};
     for (int i = 0; i < surfaces; ++i) {

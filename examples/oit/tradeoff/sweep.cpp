@@ -21,14 +21,14 @@ bool beats(const Measurement& a, const Measurement& b) {
 
 // All fragments, stored as floats.
 bool gives_nothing_up(const Measurement& measurement) {
-    const Setting& setting = measurement.setting;
-    return measurement.drawn() && setting.method->exact && !setting.quality.layers &&
-           setting.quality.epsilon == 0 && setting.quality.format == NodeFormat::float32;
+    const auto& [method, quality] = measurement.setting;
+    return measurement.drawn() && method->exact && quality == exact_setting(quality).quality;
 }
 
 const Measurement* all_layers(const Sweep& sweep) {
     for (const Measurement& measurement : sweep.measurements)
-        if (gives_nothing_up(measurement) && measurement.setting.method->name == "linked")
+        if (gives_nothing_up(measurement) &&
+            measurement.setting.method == exact_setting(measurement.setting.quality).method)
             return &measurement;
     return nullptr;
 }

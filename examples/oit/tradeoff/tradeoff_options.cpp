@@ -49,7 +49,7 @@ TradeoffOptions parse_tradeoff_options(int count, const char* const* arguments) 
     };
     const FrameArguments frame(app, options);
     add("--methods", methods, "methods to compare: all, exact, or names", "M,M,...");
-    add("--runs", runs, "timed frames of each setting, after one that is not; times are medians",
+    add("--runs", runs, "timed frames of each setting, after those that warm up; times are medians",
         "N");
     add("--json", json, "write the figures to this file", "FILE");
     add("--csv", csv, "write a table with a line for each setting to this file", "FILE");
