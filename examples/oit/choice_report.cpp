@@ -95,11 +95,14 @@ const char* basis(bool bounded) {
 // A few of the others: what is faster and over the budget, and the next.
 void print_others(const Choice& choice, const Budget& budget, std::ostream& out) {
     constexpr std::size_t most = 4;
+    const auto time = [](const Candidate& candidate) -> std::string {
+        if (candidate.times_leader) return fixed(*candidate.times_leader, 2) + " times";
+        return candidate.fastest_ms ? fixed(*candidate.fastest_ms, 2) + " ms" : "-";
+    };
     const auto row = [&](const Candidate& candidate) {
         out << "    " << std::left << std::setw(44) << short_text(candidate.setting) << std::right
-            << std::setw(9)
-            << (candidate.fastest_ms ? fixed(*candidate.fastest_ms, 2) + " ms" : "-")
-            << std::setw(14) << (candidate.error ? budget.text_of(*candidate.error) : "-") << "  "
+            << std::setw(11) << time(candidate) << std::setw(14)
+            << (candidate.error ? budget.text_of(*candidate.error) : "-") << "  "
             << reason(candidate) << '\n';
     };
     std::size_t over = 0, slower = 0;
@@ -197,6 +200,7 @@ nlohmann::ordered_json json_of(const Choice& choice, const Budget& budget, const
                                      {"fate", fates[static_cast<int>(candidate.fate)]}};
         if (candidate.error) entry["error"] = json_of(*candidate.error);
         if (candidate.fastest_ms) entry["fastest_ms"] = *candidate.fastest_ms;
+        if (candidate.times_leader) entry["times_leader"] = *candidate.times_leader;
         if (!candidate.failure.empty()) entry["failure"] = candidate.failure;
         json["candidates"].push_back(entry);
     }

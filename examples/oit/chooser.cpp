@@ -222,6 +222,7 @@ private:
             return false;
         }
         leader->least.add(other.ms());
+        contender.candidate.times_leader = own.ms() / other.ms();
         best_ms_ = std::min(best_ms_, other.ms());
         note(contender, own.ms());
         return own.ms() > margin * other.ms() && is_out(contender, margin);
@@ -285,6 +286,8 @@ private:
                     ++choice_.draws;
                 }
             update_best();
+            for (const auto& contender : contenders_)
+                contender->candidate.times_leader = contender->ms() / best_ms_;
             const double margin = 1 + (first_margin - 1) / (2 << round);
             drop([&](const Contender& contender) { return is_out(contender, margin); });
         }
@@ -315,7 +318,8 @@ private:
         choice_.bounded = winner_->candidate.bounded;
         choice_.fastest_ms = winner_->ms();
         std::ranges::stable_sort(choice_.candidates, {}, [](const Candidate& candidate) {
-            return candidate.fastest_ms.value_or(std::numeric_limits<double>::infinity());
+            return candidate.times_leader.value_or(
+                candidate.fastest_ms ? 1.0 : std::numeric_limits<double>::infinity());
         });
     }
 

@@ -30,6 +30,8 @@ struct Candidate {
         {};                                 ///< at most, where it is known: see PictureErrors::told
     bool bounded = false;                   ///< by theory, or else by comparing the picture
     std::optional<double> fastest_ms = {};  ///< a frame, where it was drawn
+    /// As long as the leader of that moment took, by turns: says more than times of other moments.
+    std::optional<double> times_leader = {};
     std::string failure = {};
 };
 

@@ -21,15 +21,6 @@ constexpr double nearly = 1.25;
 constexpr double enough_ms = 200;
 constexpr std::size_t most_runs = 200;
 
-Setting all_layers_in_float(const Frame& frame) {
-    Setting setting{&method_named("linked"), frame.quality};
-    setting.quality.format = NodeFormat::float32;
-    setting.quality.layers.reset();
-    setting.quality.epsilon = 0;
-    setting.quality.size.reset();
-    return setting;
-}
-
 Reference reference_of(const Frame& frame) {
     support::Progress progress("reference");
     return draw_reference(frame, {.progress = [&](double part) { progress.update(part); }});
@@ -52,7 +43,7 @@ FrameTimes figures_of(const std::vector<double>& times_ms) {
 }  // namespace
 
 Truth::Truth(const cellist::Device& device, const Frame& frame) : reference_(reference_of(frame)) {
-    const Setting setting = all_layers_in_float(frame);
+    const Setting setting = exact_setting(frame.quality);
     const Frame exact = with_setting(frame, setting);
     Renderer renderer(device, exact, *setting.method);
     renderer.draw();
@@ -111,7 +102,7 @@ Search::~Search() = default;
 void Search::draw(const cellist::Device& device, const Frame& frame, Trial& trial) {
     try {
         auto own = std::make_unique<Drawn>(device, frame, trial.setting);
-        own->renderer.draw();  // builds the kernels' last variants and grows the pool
+        own->renderer.warm_up();
         trial.times = figures_of({own->renderer.draw()});
         trial.errors = truth_.errors_of(own->renderer.image());
         drawn_[static_cast<std::size_t>(&trial - trials_.data())] = std::move(own);
@@ -122,7 +113,7 @@ void Search::draw(const cellist::Device& device, const Frame& frame, Trial& tria
 }
 
 void Search::time_all() {
-    const Trial* exact = find(all_layers_in_float(frame_));
+    const Trial* exact = find(exact_setting(frame_.quality));
     if (!exact || !exact->failure.empty())
         throw std::runtime_error("all layers in float cannot be drawn: " +
                                  (exact ? exact->failure : std::string("no such setting")));
