@@ -68,7 +68,6 @@ public:
 
     void resolve() override {
         if (settled_ && sorter_) {
-            longer_.fill(0);
             source_.run_on_screen(*sorter_, *fragments_, longer_);
             longer_read_ = longer_.download_async();
             return;
@@ -129,6 +128,7 @@ private:
                 "#define OIT_SORTED " + std::to_string(std::bit_ceil(longest + 1)) + "\n")));
         else
             sorter_.reset();
+        longer_.fill(0);
         settled_ = true;
     }
 

@@ -66,13 +66,26 @@ void Renderer::warm_up() {
 double Renderer::draw() {
     device_.finish();
     const support::Stopwatch stopwatch;
-    transform();
-    do {
-        store();
-        resolve();
-    } while (!complete());
-    device_.finish();
+    start();
+    finish();
     return stopwatch.ms();
+}
+
+void Renderer::start() {
+    transform();
+    store_and_resolve();
+    device_.queue().flush();
+}
+
+void Renderer::finish() {
+    while (!complete()) store_and_resolve();
+    drawn_.wait();
+}
+
+void Renderer::store_and_resolve() {
+    store();
+    resolve();
+    drawn_ = device_.enqueue_marker();
 }
 
 double Renderer::draw_changed() {

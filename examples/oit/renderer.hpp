@@ -34,7 +34,12 @@ public:
     /// Draws once, and blocks until the image is there: milliseconds from clearing to the image. Throws
     /// InputError where the method needs more than Frame::memory_bytes.
     double draw();
-    /// The same where the frame has another time, or other views of the same size.
+    /// The halves of draw(): the first enqueues the frame, and blocks only where frames are not of one
+    /// kind yet; the second blocks until the image is there. In between, another renderer can start
+    /// the next frame, so that the device does not wait for the host.
+    void start();
+    void finish();
+    /// The same as draw() where the frame has another time, or other views of the same size.
     double draw_changed();
     /// The same as draw() with a wait behind each pass, so that a frame takes longer.
     PassTimes draw_by_pass();
@@ -58,12 +63,14 @@ private:
     void transform();
     void store();
     void resolve();
+    void store_and_resolve();
     [[nodiscard]] bool complete();
 
     const cellist::Device& device_;
     std::unique_ptr<Reduction> reduction_;  ///< where Quality::reduce asks for it
     FragmentSource source_;
     std::unique_ptr<Method> method_;
+    cl::Event drawn_;
 };
 
 }  // namespace oit

@@ -64,6 +64,7 @@ static inline bool raster_ready(const View* view, RasterTriangle* t) {
 // A work-item a triangle; then the group's triangles are shared out anew, for their blocks.
 kernel void raster_bin(RASTER_QUEUES, RASTER_SCENE) {
     local uint listed[RASTER_BATCH * RASTER_PIECES_MAX];  // of the queue
+    local RasterTriangle near[RASTER_BATCH];              // the first of these
     local uint listed_count, unclipped, block_count, first;
     const uint item = get_local_id(0);
     if (item == 0) listed_count = unclipped = block_count = 0;
@@ -87,7 +88,9 @@ kernel void raster_bin(RASTER_QUEUES, RASTER_SCENE) {
                 const uint at = raster_take(&counts->triangles, 1);
                 if (at >= triangles_capacity) continue;
                 triangles[at] = clipped;
-                listed[atomic_inc(&listed_count)] = at;
+                const uint place = atomic_inc(&listed_count);
+                listed[place] = at;
+                if (place < RASTER_BATCH) near[place] = clipped;
             }
         }
     }
@@ -95,8 +98,10 @@ kernel void raster_bin(RASTER_QUEUES, RASTER_SCENE) {
     if (item == 0 && unclipped != 0) first = raster_take(&counts->triangles, unclipped);
     barrier(CLK_LOCAL_MEM_FENCE);
     if (own != CELLIST_NONE && first + own < triangles_capacity) {
+        const uint place = atomic_inc(&listed_count);
         triangles[first + own] = t;
-        listed[atomic_inc(&listed_count)] = first + own;
+        listed[place] = first + own;
+        if (place < RASTER_BATCH) near[place] = t;
     }
     barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
 
@@ -104,7 +109,7 @@ kernel void raster_bin(RASTER_QUEUES, RASTER_SCENE) {
     const uint team = item / RASTER_BIN_TEAM, lane = item % RASTER_BIN_TEAM;
     uint touched = 0;
     for (uint n = team; n < count; n += RASTER_BATCH / RASTER_BIN_TEAM) {
-        const RasterTriangle listed_one = triangles[listed[n]];
+        const RasterTriangle listed_one = n < RASTER_BATCH ? near[n] : triangles[listed[n]];
         const RasterBox box = raster_box(&listed_one);
         for (uint i = lane; i < box.all; i += RASTER_BIN_TEAM)
             touched += raster_touched(&listed_one, &box, i) != CELLIST_NONE;
@@ -116,7 +121,7 @@ kernel void raster_bin(RASTER_QUEUES, RASTER_SCENE) {
     if (touched == 0) return;
     next += first;
     for (uint n = team; n < count; n += RASTER_BATCH / RASTER_BIN_TEAM) {
-        const RasterTriangle listed_one = triangles[listed[n]];
+        const RasterTriangle listed_one = n < RASTER_BATCH ? near[n] : triangles[listed[n]];
         const RasterBox box = raster_box(&listed_one);
         for (uint i = lane; i < box.all; i += RASTER_BIN_TEAM) {
             const RasterBlock block = {listed[n], raster_touched(&listed_one, &box, i)};
