@@ -68,7 +68,8 @@ static inline bool raster_ready(const View* view, RasterTriangle* t) {
     return true;
 }
 
-// A work-item a triangle; then the group's triangles are shared out anew, for their blocks.
+// A group a batch: a work-item a triangle, and then all work-items, of which there may be more, share
+// the triangles' blocks.
 kernel void raster_bin(RASTER_QUEUES, RASTER_SCENE) {
     local uint listed[RASTER_BATCH * RASTER_PIECES_MAX];  // of the queue
     local RasterTriangle near[RASTER_BATCH];              // the first of these
@@ -80,7 +81,9 @@ kernel void raster_bin(RASTER_QUEUES, RASTER_SCENE) {
     RasterTriangle t;
     uint own = CELLIST_NONE;
     int outside_all, outside_any;
-    if (raster_load(RASTER_SCENE_PASS, get_global_id(0), &t, &outside_all, &outside_any) &&
+    if (item < RASTER_BATCH &&
+        raster_load(RASTER_SCENE_PASS, get_group_id(0) * RASTER_BATCH + item, &t, &outside_all,
+                    &outside_any) &&
         !outside_all) {
         const View view = views[instances[t.instance].eye];
         if (!outside_any) {
@@ -113,9 +116,10 @@ kernel void raster_bin(RASTER_QUEUES, RASTER_SCENE) {
     barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
 
     const uint count = listed_count;
+    const uint teams = get_local_size(0) / RASTER_BIN_TEAM;
     const uint team = item / RASTER_BIN_TEAM, lane = item % RASTER_BIN_TEAM;
     uint touched = 0, looked_at = 0, found = 0;  // a bit for each of the first 32 that it looks at
-    for (uint n = team; n < count; n += RASTER_BATCH / RASTER_BIN_TEAM) {
+    for (uint n = team; n < count; n += teams) {
         const RasterTriangle one = n < RASTER_BATCH ? near[n] : triangles[listed[n]];
         const RasterBox box = raster_box(&one);
         int x = 0, y = 0;
@@ -133,7 +137,7 @@ kernel void raster_bin(RASTER_QUEUES, RASTER_SCENE) {
     if (touched == 0) return;
     next += first;
     looked_at = 0;
-    for (uint n = team; n < count; n += RASTER_BATCH / RASTER_BIN_TEAM) {
+    for (uint n = team; n < count; n += teams) {
         const RasterTriangle one = n < RASTER_BATCH ? near[n] : triangles[listed[n]];
         const RasterBox box = raster_box(&one);
         int x = 0, y = 0;

@@ -117,6 +117,14 @@ cellist::Range batches_range(std::size_t batches) {
     return cellist::Range::padded(batches * batch_size, batch_size);
 }
 
+// A group for each batch; where these are too few for a GPU, of more work-items.
+cellist::Range bin_range(const cellist::Device& device, std::size_t batches) {
+    const bool few = device.info().type == CL_DEVICE_TYPE_GPU &&
+                     batches < 8 * std::size_t{device.info().compute_units};
+    const std::size_t items = few ? 4 * batch_size : batch_size;
+    return cellist::Range::padded(batches * items, items);
+}
+
 cellist::Range block_groups(const cellist::Device& device) {
     const Tuning tuning = tuning_for(device);
     const std::size_t items = tuning.teams * tuning.lanes;
@@ -281,7 +289,7 @@ Triangles::Triangles(const cellist::Device& device, const Projection& projection
 void Triangles::bin() {
     const Projection& p = projection_;
     counts_.fill({0, 0});
-    p.kernels_.bin.run(triangles(), counts_, queue_, capacity_of(queue_), blocks_,
+    p.kernels_.bin.run(bin_range(device_, batches_.size()), counts_, queue_, capacity_of(queue_), blocks_,
                        capacity_of(blocks_), p.views_, p.instances_, p.vertices_,
                        p.geometry_.positions(), p.geometry_.indices(), batches_);
     counted_ = counts_.download_async();
