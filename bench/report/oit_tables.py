@@ -38,6 +38,10 @@ def _ms(times):
     return f"{oit.three_digits(times['ms'])} ms"
 
 
+def _rate(times):
+    return f"{oit.three_digits(oit.frames_per_second(times))}, {_ms(times)}" if times else "–"
+
+
 def conditions(all_results):
     """The runs that all other tables are of."""
     return _table(["device", "driver", "commit", "note"],
@@ -45,7 +49,9 @@ def conditions(all_results):
 
 
 def frame_times(all_results):
-    head = ["scene", "asked of a GPU", "asked of PoCL"] + [device_title(results) for results in all_results]
+    head = ["frames a second", "asked of a GPU", "asked of PoCL"]
+    for results in all_results:
+        head += [device_title(results), "two at once"]
     rows = []
     for case in oit.cases("frame_times", all_results):
         asked = oit.FRAMES_PER_SECOND.get(case, {})
@@ -54,9 +60,10 @@ def frame_times(all_results):
         title = (f"{_CASE_TITLES.get(case, case)}, {first['width']}×{first['height']}, "
                  f"{first['triangles']:,} triangles, {first['fragments']:,} fragments, "
                  f"up to {first['most_layers']} in a pixel")
-        rows.append([title] + [f"{asked[kind]:,}" if kind in asked else "–" for kind in ("gpu", "cpu")] +
-                    [f"{_ms(figure)}, {oit.three_digits(oit.frames_per_second(figure))} a second" if figure else "–"
-                     for figure in found])
+        row = [title] + [f"{asked[kind]:,}" if kind in asked else "–" for kind in ("gpu", "cpu")]
+        for figure in found:
+            row += [_rate(figure), _rate(figure and figure.get("two_at_once"))]
+        rows.append(row)
     return _table(head, rows)
 
 

@@ -90,7 +90,7 @@ class Goals(unittest.TestCase):
     RESULTS = {
         "device": "pthread-AMD EPYC", "platform": "Portable Computing Language", "driver": "3.1+debian",
         "kind": "cpu", "threads": 2, "git": "abc",
-        "frame_times": [{"case": "teapot", "ms": 10.0}, {"case": "gearworks", "ms": 500.0}],
+        "frame_times": [{"case": "teapot", "ms": 10.0, "two_at_once": {"ms": 0.04}}, {"case": "gearworks", "ms": 500.0}],
         "exact_methods": [{"case": "teapot", "method": method, "times_linked": factor, "ms": factor}
                           for method, factor in (("linked", 1.0), ("fixed", 0.5), ("counted", 2.0))],
         "fewer_layers": [{"case": "gearworks", "layers": layers, "most_layers": 41, "speed_up": 1.2, "psnr_db": 30.0}
@@ -112,6 +112,7 @@ class Goals(unittest.TestCase):
         self.assertTrue(self.goal("cpu", "frame_times", "teapot")["met"])
         self.assertFalse(self.goal("gpu", "frame_times", "teapot")["met"])
         self.assertFalse(self.goal("cpu", "frame_times", "gearworks")["met"])
+        self.assertTrue(self.goal("gpu", "frame_times", "teapot, two at once")["met"])
 
     def test_lists_are_to_be_fastest_on_a_gpu(self):
         self.assertIn("fixed is the fastest", self.goal("cpu", "exact_methods", "teapot")["measured"])
