@@ -83,7 +83,8 @@ static inline uint cellist_sort_length(volatile global uint* heads, const cellis
 
 // Finds the places of CELLIST_SORT_WIDTH of `length` records by their keys, from record `at` on:
 // order[place] is the record. Returns the sum of the places. The sums over all records add up to
-// length * (length - 1) / 2, or to less if keys are equal; cellist_sort_rank_equal is right then, too.
+// length * (length - 1) / 2, or to less if keys are equal: their records have one place then, where any
+// of them is written last, and cellist_sort_rank_equal is to follow.
 static inline uint cellist_sort_rank(CELLIST_SORT_SHARED const cellist_sort_bits* keys, uint length,
                                      uint at, CELLIST_SORT_SHARED uchar* order) {
     const cellist_sort_keys own = CELLIST_SORT_PASTE(vload, CELLIST_SORT_WIDTH)(0, keys + at);
