@@ -44,6 +44,16 @@ kernel void exchange_and_store(volatile global uint* heads, global bench_node* n
     nodes[i] = BENCH_NODE(i, next);
 }
 
+// The same in the order that inserts keep: the whole node, the exchange, the link.
+kernel void store_exchange_link(volatile global uint* heads, global bench_node* nodes, uint cells,
+                                uint distribution, uint count) {
+    const uint i = get_global_id(0);
+    if (i >= count) return;
+    nodes[i] = BENCH_NODE(i, 0xFFFFFFFFu);
+    const uint next = atomic_xchg(&heads[bench_cell(i, cells, distribution)], i);
+    ((global uint*)&nodes[i])[BENCH_WORDS] = next;
+}
+
 // Walks every list that exchange_and_store made and writes its digest; one work-item a cell.
 kernel void read_nodes(global const uint* heads, global const uint* nodes, global uint* digests) {
     const uint cell = get_global_id(0);

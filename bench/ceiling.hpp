@@ -19,6 +19,7 @@ public:
     double store();
     double exchange();
     double exchange_and_store();
+    double store_exchange_link();
 
 private:
     struct Buffers {
@@ -31,7 +32,7 @@ private:
 
     Workload workload_;
     cellist::Source source_;
-    cellist::Kernel copy_, store_, exchange_, exchange_and_store_;
+    cellist::Kernel copy_, store_, exchange_, exchange_and_store_, store_exchange_link_;
     std::deque<Buffers> buffers_;
     std::size_t turn_ = 0;
 };

@@ -79,6 +79,13 @@ cl_uint default_nodes(const cellist::Device& device, bench::Effort effort) {
     return effort == bench::Effort::quick ? full / 4 : full;
 }
 
+/// The same device, with a queue whose events have times.
+cellist::Device profiled(const cellist::Device& device) {
+    const cl::CommandQueue& queue = device.queue();
+    return {device.context(), cl::CommandQueue(device.context(), queue.getInfo<CL_QUEUE_DEVICE>(),
+                                               CL_QUEUE_PROFILING_ENABLE)};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -91,7 +98,7 @@ int main(int argc, char** argv) try {
         return 2;
     }
 
-    const cellist::Device device = cellist::Device::choose();
+    const cellist::Device device = profiled(cellist::Device::choose());
     const cellist::DeviceInfo& info = device.info();
     const bool gpu = (info.type & CL_DEVICE_TYPE_GPU) != 0;
     if (options.nodes == 0) options.nodes = default_nodes(device, options.effort);

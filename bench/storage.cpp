@@ -56,8 +56,21 @@ Result build_read(const Suite& suite, const Workload& workload, const Keeping& k
             {{"build_ms", 1e3 * samples[1].median}, {"read_ms", 1e3 * samples[2].median}}};
 }
 
+/// Calls `use` with the positions of each storage that the library chooses and each that it may choose.
+template <class Use>
+void for_each_choice(const std::vector<Keeping>& keepings, const Use& use) {
+    const auto is_chosen = [&](std::size_t i) {
+        return keepings[i].options.storage == cellist::Storage::automatic;
+    };
+    for (std::size_t i = 0; i < keepings.size(); ++i)
+        for (std::size_t j = 0; j < keepings.size(); ++j)
+            if (is_chosen(i) && !is_chosen(j)) use(i, j);
+}
+
 /// All storages by turns, and those that the library chooses: so that what else the machine does
-/// falls on all of them. The time of the case is that of one round.
+/// falls on all of them. The time of the case is that of one round. `automatic_1_to_linked` and the like
+/// are medians of the ratios of both in the same round: a machine that is slow for some rounds changes
+/// those less than the ratio of two medians.
 Result compare_storages(const Suite& suite, const Workload& workload) {
     std::vector<Keeping> keepings = storages();
     keepings.insert(keepings.end(), automatic_storages().begin(), automatic_storages().end());
@@ -67,14 +80,22 @@ Result compare_storages(const Suite& suite, const Workload& workload) {
     std::deque<BuildRead<Record12>> works;
     for (const Keeping& keeping : keepings) works.emplace_back(suite, workload, keeping);
 
+    // After the time of a round: build and read of each storage, then the ratios.
     const std::vector<Samples> samples = sample(suite.sampling(), [&] {
-        std::vector<double> seconds{0};
-        for (BuildRead<Record12>& work : works) {
-            const auto [build, read] = work.run();
-            seconds.insert(seconds.end(), {build, read});
-            seconds[0] += build + read;
+        std::vector<std::pair<double, double>> times;
+        for (BuildRead<Record12>& work : works) times.push_back(work.run());
+        std::vector<double> values{0};
+        for (const auto& [build, read] : times) {
+            values.insert(values.end(), {build, read});
+            values[0] += build + read;
         }
-        return seconds;
+        for_each_choice(keepings, [&](std::size_t chosen, std::size_t other) {
+            const auto total = [&](std::size_t i) {
+                return times[i].first + keepings[chosen].options.expected_reads * times[i].second;
+            };
+            values.push_back(total(chosen) / total(other));
+        });
+        return values;
     });
     Result result{samples[0], double(workload.nodes), 0};
     for (std::size_t i = 0; i < works.size(); ++i) {
@@ -83,6 +104,11 @@ Result compare_storages(const Suite& suite, const Workload& workload) {
         result.counters[storage + "_read_ms"] = 1e3 * samples[2 * i + 2].median;
         result.counters[storage + "_nodes_a_record"] = works[i].nodes_a_record();
     }
+    auto ratio = samples.begin() + static_cast<std::ptrdiff_t>(2 * works.size() + 1);
+    for_each_choice(keepings, [&](std::size_t chosen, std::size_t other) {
+        result.counters[keepings[chosen].storage + "_to_" + keepings[other].storage] =
+            (ratio++)->median;
+    });
     return result;
 }
 

@@ -9,6 +9,9 @@ kernel void cellist_lengths(CELLIST_LISTS(CELLIST_RECORD, lists), global uint* l
     const uint cell = get_global_id(0);
     if (cell >= cellist_cells(lists)) return;
     uint length = 0;
-    cellist_for_each(lists, cell, node) ++length;
+    // Links in circles end, too.
+    cellist_for_each(lists, cell, node) {
+        if (++length == lists_view.capacity_nodes) break;
+    }
     lengths[(ulong)at + cell] = length;
 }

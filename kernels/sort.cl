@@ -5,6 +5,7 @@
 //   CELLIST_SORT_KEY_BITS   32 or 64, what the key needs
 //   CELLIST_SORT_SLOTS      records that are ranked together, a power of two up to 256
 //   CELLIST_SORT_WIDTH      records that a work-item ranks at once: 4, 8 or 16, at most the slots
+//   CELLIST_SORT_TEAM       work-items that sort a list, a power of two
 //   CELLIST_SORT_ITEMS      work-items that sort together, a power of two. More than one are a
 //                           work-group and share local memory (GPUs); one needs neither (CPUs)
 //
@@ -19,14 +20,12 @@
 #define CELLIST_SORT_PASTE(a, b) CELLIST_SORT_PASTED(a, b)
 #if CELLIST_SORT_KEY_BITS == 32
 typedef uint cellist_sort_bits;
-typedef CELLIST_SORT_PASTE(uint, CELLIST_SORT_WIDTH) cellist_sort_keys;
-typedef int cellist_sort_count;
-typedef CELLIST_SORT_PASTE(int, CELLIST_SORT_WIDTH) cellist_sort_counts;
+#define CELLIST_SORT_VECTOR_OF_BITS uint
+#define CELLIST_SORT_VECTOR_OF_COUNTS int
 #else
 typedef ulong cellist_sort_bits;
-typedef CELLIST_SORT_PASTE(ulong, CELLIST_SORT_WIDTH) cellist_sort_keys;
-typedef long cellist_sort_count;
-typedef CELLIST_SORT_PASTE(long, CELLIST_SORT_WIDTH) cellist_sort_counts;
+#define CELLIST_SORT_VECTOR_OF_BITS ulong
+#define CELLIST_SORT_VECTOR_OF_COUNTS long
 #endif
 
 #if CELLIST_SORT_ITEMS > 1
@@ -81,45 +80,95 @@ static inline uint cellist_sort_length(volatile global uint* heads, const cellis
 }
 #endif
 
-// Finds the places of CELLIST_SORT_WIDTH of `length` records by their keys, from record `at` on:
-// order[place] is the record. Returns the sum of the places. The sums over all records add up to
-// length * (length - 1) / 2, or to less if keys are equal: their records have one place then, where any
-// of them is written last, and cellist_sort_rank_equal is to follow.
+// Leaves a list to another class. Sound lists that are longer than a class are no more than `longer` has
+// room for.
+static inline void cellist_sort_leave(global uint* longer, uint longer_end, uint stage, uint cell,
+                                      volatile global cellist_sort_state* state) {
+    const uint at = atomic_inc(&state->longer[stage]);
+    if (at < longer_end)
+        longer[at] = cell;
+    else
+        atomic_inc(&state->broken);
+}
+
+// For each of CELLIST_SORT_WIDTH keys, from the one `at` on, how many of `length` keys are less.
+static inline void cellist_sort_count(CELLIST_SORT_SHARED const cellist_sort_bits* keys,
+                                      uint length, uint at, uint* places) {
+#if CELLIST_SORT_ITEMS > 1
+    cellist_sort_bits own[CELLIST_SORT_WIDTH];
+    for (uint j = 0; j < CELLIST_SORT_WIDTH; ++j) {
+        own[j] = keys[at + j];
+        places[j] = 0;
+    }
+    for (uint i = 0; i < length; ++i)
+        for (uint j = 0; j < CELLIST_SORT_WIDTH; ++j) places[j] += keys[i] < own[j];
+#else
+    typedef CELLIST_SORT_PASTE(CELLIST_SORT_VECTOR_OF_BITS, CELLIST_SORT_WIDTH) vector_of_bits;
+    typedef CELLIST_SORT_PASTE(CELLIST_SORT_VECTOR_OF_COUNTS, CELLIST_SORT_WIDTH) vector_of_counts;
+    const vector_of_bits own = CELLIST_SORT_PASTE(vload, CELLIST_SORT_WIDTH)(0, keys + at);
+    vector_of_counts before = 0;
+    // A comparison of vectors that holds is -1.
+    for (uint i = 0; i < length; ++i) before -= (vector_of_bits)keys[i] < own;
+    CELLIST_SORT_PASTE(vstore, CELLIST_SORT_WIDTH)
+    (CELLIST_SORT_PASTE(convert_uint, CELLIST_SORT_WIDTH)(before), 0, places);
+#endif
+}
+
+// What one of CELLIST_SORT_TEAM work-items does to rank the records of a list: it has every
+// CELLIST_SORT_TEAM-th run of CELLIST_SORT_WIDTH records.
+#define CELLIST_SORT_RUNS (CELLIST_SORT_SLOTS / (CELLIST_SORT_TEAM * CELLIST_SORT_WIDTH))
+#define cellist_sort_each_run(n, at, member, length)                                               \
+    for (uint n = 0, at = (member)*CELLIST_SORT_WIDTH; n < CELLIST_SORT_RUNS && at < (length);     \
+         ++n, at += CELLIST_SORT_TEAM * CELLIST_SORT_WIDTH)
+
+// Finds the places of a work-item's records by their keys, and returns the sum of these places. The sums
+// over all records add up to length * (length - 1) / 2, or to less if keys are equal.
 static inline uint cellist_sort_rank(CELLIST_SORT_SHARED const cellist_sort_bits* keys, uint length,
-                                     uint at, CELLIST_SORT_SHARED uchar* order) {
-    const cellist_sort_keys own = CELLIST_SORT_PASTE(vload, CELLIST_SORT_WIDTH)(0, keys + at);
-    cellist_sort_counts before = 0;
-    // A comparison that holds is -1.
-    for (uint i = 0; i < length; ++i) before -= (cellist_sort_keys)keys[i] < own;
-    cellist_sort_count places[CELLIST_SORT_WIDTH];
-    CELLIST_SORT_PASTE(vstore, CELLIST_SORT_WIDTH)(before, 0, places);
+                                     uint member, uint* places) {
     uint sum = 0;
-    for (uint i = 0; i < CELLIST_SORT_WIDTH && at + i < length; ++i) {
-        order[places[i]] = (uchar)(at + i);
-        sum += (uint)places[i];
+    cellist_sort_each_run(n, at, member, length) {
+        cellist_sort_count(keys, length, at, places + n * CELLIST_SORT_WIDTH);
+        for (uint i = 0; i < CELLIST_SORT_WIDTH && at + i < length; ++i)
+            sum += places[n * CELLIST_SORT_WIDTH + i];
     }
     return sum;
 }
 
+// Whether no two keys are equal.
+static inline int cellist_sort_unique(uint sum, uint length) {
+    return sum == length * (length - 1u) / 2u;
+}
+
+// Writes what cellist_sort_rank has found: order[place] is the record.
+static inline void cellist_sort_order(const uint* places, uint length, uint member,
+                                      CELLIST_SORT_SHARED uchar* order) {
+    cellist_sort_each_run(n, at, member, length) {
+        for (uint i = 0; i < CELLIST_SORT_WIDTH && at + i < length; ++i)
+            order[places[n * CELLIST_SORT_WIDTH + i]] = (uchar)(at + i);
+    }
+}
+
 // The same where keys may be equal: records with equal keys come in the order of records, and equal
 // records stay in theirs. Record i is nodes[first + index[i]], or nodes[first + i] without an index.
-static void cellist_sort_rank_equal(global const cellist_sort_node* nodes, uint first,
-                                    CELLIST_SORT_SHARED const uint* index,
-                                    CELLIST_SORT_SHARED const cellist_sort_bits* keys, uint length,
-                                    uint at, CELLIST_SORT_SHARED uchar* order) {
-    for (uint i = at; i < at + CELLIST_SORT_WIDTH && i < length; ++i) {
-        const cellist_sort_bits key = keys[i];
-        const struct CELLIST_RECORD own =
-            cellist_sort_record(nodes[first + (index ? index[i] : i)]);
-        uint place = 0;
-        for (uint j = 0; j < length; ++j) {
-            place += keys[j] < key;
-            if (keys[j] != key || j == i) continue;
-            const struct CELLIST_RECORD other =
-                cellist_sort_record(nodes[first + (index ? index[j] : j)]);
-            place += cellist_record_before(other, own, 0) ||
-                     (j < i && !cellist_record_before(own, other, 0));
+static void cellist_sort_order_equal(global const cellist_sort_node* nodes, uint first,
+                                     CELLIST_SORT_SHARED const uint* index,
+                                     CELLIST_SORT_SHARED const cellist_sort_bits* keys, uint length,
+                                     uint member, CELLIST_SORT_SHARED uchar* order) {
+    cellist_sort_each_run(n, at, member, length) {
+        for (uint i = at; i < at + CELLIST_SORT_WIDTH && i < length; ++i) {
+            const cellist_sort_bits key = keys[i];
+            const struct CELLIST_RECORD own =
+                cellist_sort_record(nodes[first + (index ? index[i] : i)]);
+            uint place = 0;
+            for (uint j = 0; j < length; ++j) {
+                place += keys[j] < key;
+                if (keys[j] != key || j == i) continue;
+                const struct CELLIST_RECORD other =
+                    cellist_sort_record(nodes[first + (index ? index[j] : j)]);
+                place += cellist_record_before(other, own, 0) ||
+                         (j < i && !cellist_record_before(own, other, 0));
+            }
+            order[place] = (uchar)i;
         }
-        order[place] = (uchar)i;
     }
 }

@@ -3,8 +3,7 @@
 //
 // Linked lists: bottom-up merge sort of the list itself. pending[i] is a sorted list of 2^i nodes or
 // none, and taking a node in works like adding one to a binary number, each carry merging two lists of
-// equal size. Links in circles end after as many steps as a sound list takes. Lists in one piece: heap
-// sort.
+// equal size. Every loop ends whatever the links are. Lists in one piece: heap sort.
 //
 //   cells   count   the cells to sort; all, from 0 on, if `listed` is 0
 

@@ -75,8 +75,7 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
     cellist_sort_barrier();
     for (uint i = item; i < own; i += CELLIST_SORT_ITEMS) {
         if (next[i] < lists_view.capacity_nodes) {
-            const uint at = atomic_inc(&state->longer[stage]);
-            if (at < longer_end) longer[at] = CELLIST_SORT_CELL(i);
+            cellist_sort_leave(longer, longer_end, stage, CELLIST_SORT_CELL(i), state);
             lengths[i] = CELLIST_NONE;
         } else {
             firsts[i] = cellist_sort_add(&total, lengths[i]);
@@ -115,31 +114,28 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
             length = cellist_sort_length(lists_heads, lists_view, cell);
             if (length > CELLIST_SORT_SLOTS) {
                 length = 0;
-                if (member == 0) {
-                    const uint at = atomic_inc(&state->longer[stage]);
-                    if (at < longer_end) longer[at] = cell;
-                }
+                if (member == 0) cellist_sort_leave(longer, longer_end, stage, cell, state);
             }
         }
         for (uint i = member; i < length; i += CELLIST_SORT_TEAM)
             keys[row + i] = cellist_sort_key(cellist_sort_record(own_nodes[first + i]));
 #endif
         cellist_sort_barrier();
-        for (uint at = member * CELLIST_SORT_WIDTH; at < length;
-             at += CELLIST_SORT_TEAM * CELLIST_SORT_WIDTH)
-            cellist_sort_add(&sums[list], cellist_sort_rank(keys + row, length, at, order + row));
+        uint places[CELLIST_SORT_RUNS * CELLIST_SORT_WIDTH];
+        if (length > 0)
+            cellist_sort_add(&sums[list], cellist_sort_rank(keys + row, length, member, places));
 #if CELLIST_SORT_ITEMS > 1
         if (member == 0 && length > 0) atomic_inc(&in_class[cellist_sort_class(length)]);
 #endif
         cellist_sort_barrier();
-        if (length > 0 && sums[list] != length * (length - 1) / 2)
-            for (uint at = member * CELLIST_SORT_WIDTH; at < length;
-                 at += CELLIST_SORT_TEAM * CELLIST_SORT_WIDTH)
+        if (length > 0 && cellist_sort_unique(sums[list], length))
+            cellist_sort_order(places, length, member, order + row);
+        else
 #if CELLIST_MODES == CELLIST_LINKED
-                cellist_sort_rank_equal(own_nodes, 0, index + row, keys + row, length, at,
-                                        order + row);
+            cellist_sort_order_equal(own_nodes, 0, index + row, keys + row, length, member,
+                                     order + row);
 #else
-                cellist_sort_rank_equal(own_nodes, first, 0, keys + row, length, at, order + row);
+            cellist_sort_order_equal(own_nodes, first, 0, keys + row, length, member, order + row);
 #endif
         cellist_sort_barrier();
 #if CELLIST_MODES == CELLIST_LINKED

@@ -182,13 +182,19 @@ kernel void cellist_sort_collect(CELLIST_LISTS(CELLIST_RECORD, lists), global co
     }
 }
 
-// Says that the first `stored` nodes of the pool are allocated, and no others; one work-item a shard.
+// Says that the first `stored` nodes of the pool are allocated, and no others; one work-item a shard, and one
+// a hand.
 kernel void cellist_sort_allocate(CELLIST_LISTS(CELLIST_RECORD, lists), uint stored) {
-    const uint shard = get_global_id(0);
-    if (shard >= 1u << lists_view.shard_bits) return;
+    const uint i = get_global_id(0);
+    const uint count = 1u << lists_view.shard_bits;
     cellist_view view = lists_view;
     view.capacity_nodes = stored;
-    lists_shards[shard].allocated = cellist_shard_nodes(view, shard);
+    if (i < count) lists_shards[i].allocated = cellist_shard_nodes(view, i);
+    if (i < lists_view.hands) {
+        volatile global cellist_hand* hand = &cellist_hands(lists_shards, view)[i];
+        hand->last = hand->node;
+        hand->end = hand->next;
+    }
 }
 
 #endif
@@ -216,14 +222,13 @@ CELLIST_SORT_KERNEL cellist_sort_chunks(global const cellist_sort_long* longs,
     for (uint i = item; i < length; i += CELLIST_SORT_ITEMS)
         keys[i] = cellist_sort_key(cellist_sort_record(nodes[first + i]));
     cellist_sort_barrier();
-    for (uint at = item * CELLIST_SORT_WIDTH; at < length;
-         at += CELLIST_SORT_ITEMS * CELLIST_SORT_WIDTH)
-        cellist_sort_add(&sum, cellist_sort_rank(keys, length, at, order));
+    uint places[CELLIST_SORT_RUNS * CELLIST_SORT_WIDTH];
+    cellist_sort_add(&sum, cellist_sort_rank(keys, length, item, places));
     cellist_sort_barrier();
-    if (length > 0 && sum != length * (length - 1) / 2)
-        for (uint at = item * CELLIST_SORT_WIDTH; at < length;
-             at += CELLIST_SORT_ITEMS * CELLIST_SORT_WIDTH)
-            cellist_sort_rank_equal(nodes, first, 0, keys, length, at, order);
+    if (cellist_sort_unique(sum, length))
+        cellist_sort_order(places, length, item, order);
+    else
+        cellist_sort_order_equal(nodes, first, 0, keys, length, item, order);
     cellist_sort_barrier();
     cellist_sort_node moved[CELLIST_SORT_SLOTS / CELLIST_SORT_ITEMS];
     for (uint i = 0;

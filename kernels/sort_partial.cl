@@ -1,8 +1,8 @@
 // Brings the first few records of every list to its front, in order; the others follow in any order. See
 // sort.cl. The whole list is visited.
 //
-//   wanted    records of each list that are brought to its front, at most CELLIST_SORT_FRONT
-//   longest  lists of more nodes are left as they are, and counted in state->longer[0]
+//   count       records of each list that are brought to its front, at most CELLIST_SORT_FRONT
+//   length_max  lists of more nodes are left as they are, and counted in state->longer[0]
 //
 // Links and offsets stay as they are, records move: those that come first to the first nodes of the list,
 // and those that were there to where these come from. A work-item has CELLIST_SORT_LISTS lists.
@@ -17,23 +17,23 @@ typedef struct cellist_sort_front {
 
 // Looks at the next node of a list, the `number`-th.
 static inline void cellist_sort_take(CELLIST_LISTS(CELLIST_RECORD, lists),
-                                     cellist_sort_front* front, uint wanted, uint number,
+                                     cellist_sort_front* front, uint count, uint number,
                                      uint node) {
     const cellist_sort_bits key = cellist_sort_key(cellist_get(lists, node));
-    if (number < wanted) front->places[number] = node;
-    uint at = min(number, wanted);
+    if (number < count) front->places[number] = node;
+    uint at = min(number, count);
     for (; at > 0; --at) {
         if (key > front->keys[at - 1]) break;
         if (key == front->keys[at - 1] &&
             !cellist_record_before(cellist_get(lists, node),
                                    cellist_get(lists, front->nodes[at - 1]), 0))
             break;
-        if (at == wanted) continue;
+        if (at == count) continue;
         front->keys[at] = front->keys[at - 1];
         front->nodes[at] = front->nodes[at - 1];
         front->numbers[at] = front->numbers[at - 1];
     }
-    if (at == wanted) return;
+    if (at == count) return;
     front->keys[at] = key;
     front->nodes[at] = node;
     front->numbers[at] = number;
@@ -43,7 +43,7 @@ static inline void cellist_sort_take(CELLIST_LISTS(CELLIST_RECORD, lists),
 static inline void cellist_sort_move(CELLIST_LISTS(CELLIST_RECORD, lists),
                                      const cellist_sort_front* front, uint count) {
     struct CELLIST_RECORD records[CELLIST_SORT_FRONT];
-    // Bit i: the record of the first nodes' i-th is among those that come first.
+    // Bit i: the i-th node of the list keeps one of the first `count` records.
     ulong staying = 0;
     for (uint i = 0; i < count; ++i) {
         records[i] = cellist_get(lists, front->nodes[i]);
@@ -58,7 +58,7 @@ static inline void cellist_sort_move(CELLIST_LISTS(CELLIST_RECORD, lists),
     for (uint i = 0; i < count; ++i) cellist_get(lists, front->places[i]) = records[i];
 }
 
-kernel void cellist_sort_partial(CELLIST_LISTS(CELLIST_RECORD, lists), uint wanted, uint longest,
+kernel void cellist_sort_partial(CELLIST_LISTS(CELLIST_RECORD, lists), uint count, uint length_max,
                                  volatile global cellist_sort_state* state) {
     const ulong begin = (ulong)get_global_id(0) * CELLIST_SORT_LISTS;
     if (begin >= cellist_cells(lists)) return;
@@ -79,7 +79,7 @@ kernel void cellist_sort_partial(CELLIST_LISTS(CELLIST_RECORD, lists), uint want
 #endif
     }
     // One node of each list at a time: a work-item waits for all of its lists together.
-    for (uint step = 0; step < longest; ++step) {
+    for (uint step = 0; step < length_max; ++step) {
         uint more = 0;
         for (uint i = 0; i < own; ++i) {
             const uint node = next[i];
@@ -89,7 +89,7 @@ kernel void cellist_sort_partial(CELLIST_LISTS(CELLIST_RECORD, lists), uint want
 #else
             ++next[i];
 #endif
-            cellist_sort_take(CELLIST_PASS(lists), &fronts[i], wanted, step, node);
+            cellist_sort_take(CELLIST_PASS(lists), &fronts[i], count, step, node);
             lengths[i] = step + 1;
             more = 1;
         }
@@ -99,6 +99,6 @@ kernel void cellist_sort_partial(CELLIST_LISTS(CELLIST_RECORD, lists), uint want
         if (next[i] != ends[i] && next[i] < lists_view.capacity_nodes)
             atomic_inc(&state->longer[0]);
         else
-            cellist_sort_move(CELLIST_PASS(lists), &fronts[i], min(lengths[i], wanted));
+            cellist_sort_move(CELLIST_PASS(lists), &fronts[i], min(lengths[i], count));
     }
 }

@@ -47,12 +47,6 @@ cl::Event CellScan::read_later(Totals& totals) const {
     return totals_.read_later(&totals, sizeof totals);
 }
 
-CellScan::Totals CellScan::totals() const {
-    Totals totals;
-    totals_.read(&totals, sizeof totals);
-    return totals;
-}
-
 void CellScan::write_offsets(const cl::Buffer& heads, std::uint64_t capacity_nodes) {
     block_offsets_.run(blocks_range(blocks_), heads, counts_at_, cells_, sums_.cl(),
                        static_cast<cl_uint>(capacity_nodes));

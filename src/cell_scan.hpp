@@ -9,7 +9,7 @@
 namespace cellist::detail {
 
 /// Sums over the counts of all cells, and where lists start that have these lengths. The counts are
-/// words of a head buffer, from `counts_at` on. Nothing blocks but totals().
+/// words of a head buffer, from `counts_at` on. Nothing blocks.
 class CellScan {
 public:
     CellScan(std::shared_ptr<DeviceState> device, std::uint64_t cells, cl_uint counts_at);
@@ -24,7 +24,6 @@ public:
     /// completed.
     [[nodiscard]] cl::Event read_later(Totals& totals) const;
     /// The totals of the last sum(). Blocks.
-    [[nodiscard]] Totals totals() const;
 
     /// Writes the offsets of the lists, none over `capacity_nodes`, to the begin of the heads: one a
     /// cell, and the end of the last list. Follows a sum() without a limit.

@@ -52,6 +52,13 @@ std::string trimmed(std::string text) {
     return text;
 }
 
+// Whether kernels can tell the threads of this processor apart: see threads.clh.
+#if defined(__linux__) && (defined(__x86_64__) || defined(__aarch64__))
+constexpr bool knows_threads = true;
+#else
+constexpr bool knows_threads = false;
+#endif
+
 DeviceInfo describe(const cl::Device& device) {
     const std::string extensions = device.getInfo<CL_DEVICE_EXTENSIONS>();
     const auto has = [&](const char* name) { return extensions.find(name) != std::string::npos; };
@@ -72,6 +79,8 @@ DeviceInfo describe(const cl::Device& device) {
     info.fp64 = device.getInfo<CL_DEVICE_DOUBLE_FP_CONFIG>() != 0;
     if (has("cl_nv_device_attribute_query"))
         info.lanes = device.getInfo<CL_DEVICE_COMPUTE_CAPABILITY_MAJOR_NV>() >= 7;
+    info.threads = knows_threads && info.platform == "Portable Computing Language" &&
+                   info.type == CL_DEVICE_TYPE_CPU && info.int64_atomics;
     return info;
 }
 
@@ -140,7 +149,7 @@ Device Device::choose(std::string_view selector) {
 Device::Device(const cl::Device& device) : state_(std::make_shared<detail::DeviceState>()) {
     detail::opencl([&] {
         state_->context = cl::Context(device);
-        state_->queue = cl::CommandQueue(state_->context, device, CL_QUEUE_PROFILING_ENABLE);
+        state_->queue = cl::CommandQueue(state_->context, device);
         state_->device = cl::Device(device);
         state_->info = describe(device);
     });

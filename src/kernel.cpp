@@ -24,24 +24,32 @@ using detail::ProgramText;
 struct Parameter {
     std::string declaration;    ///< e.g. "uint count"
     std::string type;           ///< of the value or of what a pointer points to, e.g. "uint"
+    std::string comparable;     ///< what of the type must be the same in an argument
     bool is_container = false;  ///< the nodes of a container; `type` is their record
     Arguments::Kind kind = Arguments::Kind::value;
     std::size_t size = 0;  ///< in bytes; 0 if not known
 };
 
+/// What a device has, unless the build options define it.
+void add_switch(ProgramText& whole, const std::string& name, bool on) {
+    whole.add(
+        "#ifndef CELLIST_" + name + "\n#define CELLIST_" + name + (on ? " 1" : " 0") + "\n#endif",
+        "CELLIST_" + name);
+}
+
 ProgramText whole_source(const Source& source, const detail::Definitions& definitions,
-                         cl_uint modes, bool lanes) {
+                         cl_uint modes, const DeviceInfo& device) {
     bool uses_glm = false;
     const std::string text = detail::without_library_includes(source.text, uses_glm);
     detail::Definitions all = definitions;
     if (uses_glm) all.add(detail::glm_source());
     ProgramText whole;
     whole.add("#define CELLIST_MODES " + std::to_string(modes) + "u", "modes");
-    whole.add(std::string("#ifndef CELLIST_LANES\n#define CELLIST_LANES ") + (lanes ? "1" : "0") +
-                  "\n#endif",
-              "lanes");
+    add_switch(whole, "LANES", device.lanes);
+    add_switch(whole, "THREADS", device.threads);
     whole.add(kernels::view_h, "cellist/view.h");
     whole.add(kernels::lanes_clh, "cellist/lanes.clh");
+    whole.add(kernels::threads_clh, "cellist/threads.clh");
     whole.add(kernels::allocation_clh, "cellist/allocation.clh");
     whole.add(kernels::lists_clh, "cellist/lists.clh");
     whole.add(all.source(), "structs");
@@ -55,7 +63,7 @@ const cl::Program& build(detail::DeviceState& device, const Source& source,
     if (definitions.needs_fp64 && !device.info.fp64)
         throw Error("a struct has members of type double, which " + device.info.name +
                     " does not support");
-    const ProgramText whole = whole_source(source, definitions, modes, device.info.lanes);
+    const ProgramText whole = whole_source(source, definitions, modes, device.info);
     try {
         return device.program(whole.text(), "-cl-std=CL1.2 -cl-kernel-arg-info " + source.options);
     } catch (const OpenClError& error) {
@@ -127,6 +135,7 @@ std::vector<Parameter> parameters_of(const cl::Kernel& kernel,
         constexpr std::string_view nodes = "cellist_node_";
         parameter.is_container = parameter.type.starts_with(nodes);
         if (parameter.is_container) parameter.type.erase(0, nodes.size());
+        parameter.comparable = comparable(parameter.type, definitions);
         if (type == "sampler_t")
             parameter.kind = Arguments::Kind::sampler;
         else if (address == CL_KERNEL_ARG_ADDRESS_LOCAL)
@@ -232,9 +241,9 @@ struct Variant {
             (argument.is_container && argument.type != parameter.type))
             fail(parameter.is_container ? "lists of " + parameter.type : "a buffer",
                  argument.is_container ? "lists of " + argument.type : "a buffer");
-        const std::string given = comparable(argument.type, definitions);
-        const std::string taken = comparable(parameter.type, definitions);
-        if (!given.empty() && !taken.empty() && given != taken)
+        const std::string given =
+            parameter.comparable.empty() ? "" : comparable(argument.type, definitions);
+        if (!given.empty() && given != parameter.comparable)
             fail(parameter.type,
                  argument.type + (argument.kind == Arguments::Kind::memory
                                       ? " (pass Buffer::cl() to reinterpret its elements)"
@@ -285,7 +294,7 @@ Kernel::~Kernel() = default;
 
 const std::string& Kernel::name() const { return impl_->name; }
 
-cl::Event Kernel::enqueue(const Range& range, const Arguments& arguments) {
+void Kernel::enqueue(const Range& range, const Arguments& arguments, cl::Event* event) {
     Variant& variant =
         impl_->variant(arguments.modes() != 0 ? arguments.modes() : impl_->definitions.modes);
     const auto list = arguments.list();
@@ -300,19 +309,18 @@ cl::Event Kernel::enqueue(const Range& range, const Arguments& arguments) {
         opencl([&] { variant.kernel.setArg(i, list[i].size, data); });
     }
 
-    cl::Event event;
     opencl([&] {
         const cl::CommandQueue& queue = impl_->device->ordered_queue();
         const auto& extents = range.global;
-        if (std::find(extents.begin(), extents.end(), 0u) != extents.end())
-            queue.enqueueMarkerWithWaitList(nullptr, &event);
-        else
+        if (std::find(extents.begin(), extents.end(), 0u) != extents.end()) {
+            if (event != nullptr) queue.enqueueMarkerWithWaitList(nullptr, event);
+        } else {
             queue.enqueueNDRangeKernel(
                 variant.kernel, cl::NullRange, nd_range(range.global, range.dimensions),
                 work_group(range, variant.required_work_group, variant.work_group_limit), nullptr,
-                &event);
+                event);
+        }
     });
-    return event;
 }
 
 }  // namespace cellist

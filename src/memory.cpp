@@ -59,9 +59,9 @@ void Memory::fill(const void* pattern, std::size_t pattern_bytes, std::size_t by
     if (bytes == 0) return;
     if (std::has_single_bit(pattern_bytes) && pattern_bytes <= 128) {
         // The C++ bindings take the pattern as a type, not as bytes.
-        const cl_int code = clEnqueueFillBuffer(state_->ordered_queue()(), buffer_(), pattern,
-                                                pattern_bytes, 0, bytes, 0, nullptr, nullptr);
-        if (code != CL_SUCCESS) throw OpenClError("clEnqueueFillBuffer", code);
+        check("clEnqueueFillBuffer",
+              clEnqueueFillBuffer(state_->ordered_queue()(), buffer_(), pattern, pattern_bytes, 0,
+                                  bytes, 0, nullptr, nullptr));
         return;
     }
     std::vector<std::byte> copies(bytes);

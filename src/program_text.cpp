@@ -117,7 +117,12 @@ std::string with_hints(std::string log) {
     if (!record.empty())
         log += "\nhint: name a Lists<" + record + "> or cellist::type<" + record +
                "> in the constructor of the Kernel, so that it knows the struct";
-    if (!key.empty()) log += "\nhint: '" + key + "' is no scalar member of an adapted struct";
+    if (log.find("ptxas") != std::string::npos && log.find("near '}'") != std::string::npos)
+        log += "\nhint: NVIDIA's compiler fails at kernels without parameters; give each one";
+    if (log.find("'cellist_order'") != std::string::npos)
+        log += "\nhint: the value of a sort expression is an integer or a float";
+    if (!key.empty() && record.empty())
+        log += "\nhint: '" + key + "' is no scalar member of an adapted struct";
     return log;
 }
 

@@ -50,8 +50,8 @@ std::string key_function(const SortKey& key) {
            "\n); }\n#ifdef __clang__\n#pragma clang diagnostic pop\n#endif\n";
 }
 
-std::string kernel_source(const char* name, std::string_view source, const std::string& record,
-                          const SortKey& key, const SortTuning& tuning) {
+std::string source_text(const KernelFile& file, const std::string& record, const SortKey& key,
+                        const SortTuning& tuning) {
     std::string text = "#define CELLIST_RECORD " + record + "\n" + define("KEY_BITS", key.bits) +
                        define("SLOTS", tuning.slots) + define("WIDTH", tuning.width) +
                        define("ITEMS", tuning.items) + define("TEAM", tuning.team) +
@@ -59,8 +59,8 @@ std::string kernel_source(const char* name, std::string_view source, const std::
                        define("FRONT", tuning.front) + define("PART_BITS", part_bits) +
                        "#line 1 \"sort.cl\"\n";
     text += kernels::sort_cl;
-    text += key_function(key) + "#line 1 \"" + name + ".cl\"\n";
-    text += source;
+    text += key_function(key) + "#line 1 \"" + file.name + "\"\n";
+    text += file.text;
     return text;
 }
 
@@ -74,13 +74,12 @@ ListSorter::ListSorter(std::shared_ptr<DeviceState> device, Definitions definiti
       cells_{Memory(device_, 1, sizeof(cl_uint), "cells with long lists"),
              Memory(device_, 1, sizeof(cl_uint), "cells with long lists")} {}
 
-Kernel& ListSorter::kernel(const char* name, std::string_view source, const Sort& sort,
+Kernel& ListSorter::kernel(const KernelFile& file, const char* name, const Sort& sort,
                            const SortTuning& tuning) {
     const std::tuple id(std::string(name), sort.storage.mode(), sort.key, tuning);
     if (const auto known = kernels_.find(id); known != kernels_.end()) return known->second;
     definitions_.modes = sort.storage.mode();
-    const std::string text =
-        kernel_source(name, source, definitions_.records.back().name, sort.key, tuning);
+    const std::string text = source_text(file, definitions_.records.back().name, sort.key, tuning);
     return kernels_.emplace(id, Kernel(device_, Source{.text = text}, name, definitions_))
         .first->second;
 }
@@ -132,9 +131,10 @@ void ListSorter::sort_in_place(Sort& sort) {
     const cl_uint listed = sort.cells != nullptr ? 1 : 0;
     const cl::Buffer& cells = listed ? sort.cells->cl() : state_.cl();
     const auto count = static_cast<cl_uint>(sort.count);
-    sort.done =
-        kernel("cellist_sort_in_place", kernels::sort_in_place_cl, sort, sort.plan.of_long_lists())
-            .enqueue(Range::padded(count, 64), arguments_of(sort.storage, cells, listed, count));
+    kernel({"sort_in_place.cl", kernels::sort_in_place_cl}, "cellist_sort_in_place", sort,
+           sort.plan.of_long_lists())
+        .enqueue(Range::padded(count, 64), arguments_of(sort.storage, cells, listed, count),
+                 &sort.done);
 }
 
 /// True if every list has its first records at its front then. False if lists are to be sorted: because
@@ -143,14 +143,14 @@ bool ListSorter::bring_to_front(Sort& sort, std::uint32_t front) {
     if (!sort.plan.front_pays(front, sort.storage.stored() / sort.storage.cells())) return false;
     const SortTuning tuning = sort.plan.of_front(front);
     clear_state();
-    sort.done = kernel("cellist_sort_partial", kernels::sort_partial_cl, sort, tuning)
-                    .enqueue(Range::padded((sort.count + tuning.lists - 1) / tuning.lists, 64),
-                             arguments_of(sort.storage, front, front_length_max, state_.cl()));
+    kernel({"sort_partial.cl", kernels::sort_partial_cl}, "cellist_sort_partial", sort, tuning)
+        .enqueue(Range::padded((sort.count + tuning.lists - 1) / tuning.lists, 64),
+                 arguments_of(sort.storage, front, front_length_max, state_.cl()), &sort.done);
     read_state(sort);
     return sort.state.longer[0] == 0;
 }
 
-/// The class that most lists belong to: by the last sort, or by the mean length.
+/// The least class that has room for nearly all lists: by the last sort, or by the mean length.
 std::size_t ListSorter::first_class(const Sort& sort) const {
     std::uint64_t longer = std::accumulate(in_class_.begin(), in_class_.end(), std::uint64_t{0});
     if (longer == 0)
@@ -184,7 +184,7 @@ void ListSorter::sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage)
     const ListStorage& storage = sort.storage;
     // Sound lists that are longer than the class are no more than this.
     const std::uint64_t most =
-        std::min<std::uint64_t>(sort.count, storage.capacity_nodes() / (tuning.slots + 1));
+        std::min<std::uint64_t>(sort.count, storage.pool_nodes() / (tuning.slots + 1));
     Memory& longer = cells_[stage % 2];
     if (longer.size_bytes() < most * sizeof(cl_uint))
         longer = Memory(device_, most, sizeof(cl_uint), "cells with long lists");
@@ -198,10 +198,9 @@ void ListSorter::sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage)
         arguments.add(spare->nodes.cl());
     }
     const std::uint64_t together = (sort.count + tuning.lists - 1) / tuning.lists;
-    sort.done =
-        kernel("cellist_sort_lists", kernels::sort_lists_cl, sort, tuning)
-            .enqueue(Range::padded(together * tuning.items, tuning.items == 1 ? 64 : tuning.items),
-                     arguments);
+    kernel({"sort_lists.cl", kernels::sort_lists_cl}, "cellist_sort_lists", sort, tuning)
+        .enqueue(Range::padded(together * tuning.items, tuning.items == 1 ? 64 : tuning.items),
+                 arguments, &sort.done);
     sort.cells = &longer;
 }
 
@@ -214,10 +213,9 @@ void ListSorter::sort_long(Sort& sort) {
     const auto count = static_cast<cl_uint>(sort.count);
     const cl::Buffer& cells = sort.cells->cl();
     const Memory longs(device_, count, sizeof(cellist_sort_long), "long lists");
-    const std::uint64_t owners_end = storage.capacity_nodes() / tuning.slots + count;
+    const std::uint64_t owners_end = storage.pool_nodes() / tuning.slots + count;
     const Memory owners(device_, owners_end, sizeof(cl_uint), "owners of chunks");
-    const std::uint64_t part_count =
-        sort.linked ? (storage.capacity_nodes() >> part_bits) + count : 0;
+    const std::uint64_t part_count = sort.linked ? (storage.pool_nodes() >> part_bits) + count : 0;
     const Memory parts(device_, part_count, sizeof(cl_uint2), "parts of lists");
     Memory places(device_, part_count, sizeof(cl_uint2), "places of parts of lists");
     const Range walks = Range::padded((part_count + tuning.lists - 1) / tuning.lists,
@@ -273,8 +271,8 @@ void ListSorter::merge(Sort& sort, const Memory& longs, const Memory& owners) {
 /// Enqueues a kernel of sort_long.cl.
 void ListSorter::run_long(Sort& sort, const char* name, const Range& range,
                           const Arguments& arguments) {
-    sort.done = kernel(name, kernels::sort_long_cl, sort, sort.plan.of_long_lists())
-                    .enqueue(range, arguments);
+    kernel({"sort_long.cl", kernels::sort_long_cl}, name, sort, sort.plan.of_long_lists())
+        .enqueue(range, arguments, &sort.done);
 }
 
 /// Puts the lists that have moved in the place of those that have not.
@@ -284,10 +282,10 @@ void ListSorter::adopt(Sort& sort) {
         throw Error("lists cannot be sorted: they have " + std::to_string(sort.state.nodes) +
                     " nodes instead of " + std::to_string(storage.stored()) +
                     " (Lists::validate() finds why); the lists are as they were");
-    if (storage.stored() < storage.capacity_nodes())
-        run_long(sort, "cellist_sort_allocate", Range::padded(1u << CELLIST_SHARD_BITS_MAX),
+    if (storage.stored() < storage.pool_nodes())
+        run_long(sort, "cellist_sort_allocate", Range::padded(storage.counters()),
                  arguments_of(storage, static_cast<cl_uint>(storage.stored())));
-    storage.exchange_spare();
+    storage.adopt_spare();
 }
 
 }  // namespace cellist::detail

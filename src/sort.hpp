@@ -20,6 +20,12 @@
 
 namespace cellist::detail {
 
+/// A source of the library.
+struct KernelFile {
+    const char* name;
+    std::string_view text;
+};
+
 /// Sorts the lists of a container in classes by their length: up to some hundred nodes by ranking, each
 /// list on its own; longer ones by all work-items together. Kernels are compiled when a list needs them.
 class ListSorter {
@@ -62,7 +68,7 @@ private:
 
     void clear_state();
     void read_state(Sort& sort) const;
-    Kernel& kernel(const char* name, std::string_view source, const Sort& sort,
+    Kernel& kernel(const KernelFile& file, const char* name, const Sort& sort,
                    const SortTuning& tuning);
 
     std::shared_ptr<DeviceState> device_;

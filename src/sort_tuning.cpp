@@ -9,7 +9,8 @@ namespace cellist::detail {
 
 namespace {
 
-/// Private memory for the records that are brought to the front of a list.
+/// Private memory for records that are sorted, and for those that are brought to the front of a list.
+constexpr std::size_t moved_bytes_max = 65536;
 constexpr std::size_t front_bytes_max = 4096;
 constexpr std::uint32_t front_max = 64;
 
@@ -20,16 +21,19 @@ std::size_t SortPlan::classes() const { return in_groups_ ? CELLIST_SORT_CLASSES
 SortTuning SortPlan::of_class(std::size_t index) const {
     if (!in_groups_) {
         if (linked_) return {.slots = 256, .width = 8, .items = 1, .team = 1, .lists = 32};
-        // The records of a list that lies in one piece are copied to private memory.
-        const std::size_t fit = std::bit_floor(std::size_t{65536} / record_bytes_);
-        const auto slots = static_cast<unsigned>(std::clamp<std::size_t>(fit, 8, 256));
-        return {.slots = slots, .width = 8, .items = 1, .team = 1, .lists = 8};
+        return {.slots = slots_that_fit(256), .width = 8, .items = 1, .team = 1, .lists = 8};
     }
     const unsigned slots = CELLIST_SORT_CLASS_MIN << index;
     const unsigned width = slots > 32 || (linked_ && index == 0) ? 8 : 4;
     constexpr unsigned items = 128;
     const unsigned team = slots / width;
     return {.slots = slots, .width = width, .items = items, .team = team, .lists = items / team};
+}
+
+/// Records that one work-item copies to private memory.
+unsigned SortPlan::slots_that_fit(unsigned most) const {
+    const std::size_t fit = std::bit_floor(moved_bytes_max / record_bytes_);
+    return static_cast<unsigned>(std::clamp<std::size_t>(fit, 8, most));
 }
 
 std::size_t SortPlan::class_for(std::uint64_t length) const {
@@ -41,14 +45,19 @@ std::size_t SortPlan::class_for(std::uint64_t length) const {
 SortTuning SortPlan::of_long_lists() const {
     if (in_groups_)
         return {.slots = 256, .width = 4, .items = 64, .team = 64, .lists = 1, .share = 2};
-    return {.slots = 128, .width = 8, .items = 1, .team = 1, .lists = 32, .share = 1024};
+    return {.slots = slots_that_fit(128),
+            .width = 8,
+            .items = 1,
+            .team = 1,
+            .lists = 32,
+            .share = 1024};
 }
 
 // On an EPYC under PoCL, the first 8 of 64 nodes are found in 0.8 times as long as the lists are sorted,
 // 8 of 256 in a third, 8 of 4,096 in a sixth. On an H200, where short lists are sorted in local memory,
 // it takes 0.8 to 5 times as long for lists of 64, and half as long for 16 of 1,024.
 bool SortPlan::front_pays(std::uint32_t front, std::uint64_t mean) const {
-    if (front > front_max || front * record_bytes_ > front_bytes_max) return false;
+    if (front > front_max || of_front(front).front * record_bytes_ > front_bytes_max) return false;
     return mean >= (in_groups_ ? 512 : 8 * std::uint64_t{front});
 }
 

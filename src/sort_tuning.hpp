@@ -45,6 +45,8 @@ public:
     [[nodiscard]] SortTuning of_front(std::uint32_t front) const;
 
 private:
+    [[nodiscard]] unsigned slots_that_fit(unsigned most) const;
+
     bool in_groups_;
     bool linked_;
     std::size_t record_bytes_;

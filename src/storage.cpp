@@ -1,13 +1,17 @@
 #include "storage.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <span>
 
+#include "cellist_kernels.hpp"
 #include "storages.hpp"
 
 namespace cellist::detail {
 
 static_assert(Shape::extent_max == CELLIST_EXTENT_MAX);
 static_assert(Shape::cells_max < CELLIST_NONE);
+static_assert(sizeof(cellist_hand) == sizeof(cellist_shard));
 
 namespace {
 
@@ -22,6 +26,11 @@ cl_uint shard_bits_for(std::uint64_t capacity_nodes, Allocation allocation) {
            (std::uint64_t{4} * CELLIST_BLOCK_NODES << (bits + 1)) <= capacity_nodes)
         ++bits;
     return bits;
+}
+
+/// Elements of the counters that the owners of hands take.
+std::size_t elements_of_owners(cl_uint hands) {
+    return hands * sizeof(cl_ulong) / sizeof(cellist_shard);
 }
 
 /// Builds that grow as often as this end with an error.
@@ -61,7 +70,7 @@ void ListStorage::add_to(Arguments& arguments) const {
         {static_cast<cl_uint>(shape_.extent(0)), static_cast<cl_uint>(shape_.extent(1)),
          static_cast<cl_uint>(shape_.extent(2)), static_cast<cl_uint>(shape_.extent(3))},
         static_cast<cl_uint>(shape_.cells()),
-        static_cast<cl_uint>(capacity_nodes_),
+        static_cast<cl_uint>(pool_nodes()),
         shard_bits_,
         mode_,
         slots_,
@@ -69,7 +78,8 @@ void ListStorage::add_to(Arguments& arguments) const {
         open_ ? static_cast<cl_uint>(slice_.cells) : 0,
         open_ && reserves_ ? 1u : 0u,
         rank_member_,
-        rank_words_};
+        rank_words_,
+        hands_with(capacity_nodes_)};
     arguments.add_nodes(nodes_.cl(), record().name);
     arguments.add(heads_.cl());
     arguments.add(shards_.cl());
@@ -77,10 +87,19 @@ void ListStorage::add_to(Arguments& arguments) const {
     arguments.add_mode(mode_);
 }
 
+std::uint64_t ListStorage::pool_nodes_with(std::uint64_t capacity_nodes) const {
+    return capacity_nodes + std::uint64_t{hands_with(capacity_nodes)} * CELLIST_BLOCK_NODES;
+}
+
+std::uint64_t ListStorage::counters_with(std::uint64_t capacity_nodes) const {
+    const cl_uint hands = hands_with(capacity_nodes);
+    return (std::uint64_t{1} << shard_bits_for(capacity_nodes, options_.allocation)) + 1 + hands +
+           elements_of_owners(hands);
+}
+
 std::uint64_t ListStorage::bytes_with(std::uint64_t capacity_nodes) const {
-    const std::uint64_t shards =
-        (std::uint64_t{1} << shard_bits_for(capacity_nodes, options_.allocation)) + 1;
-    return heads_.size_bytes() + capacity_nodes * node_bytes_ + shards * sizeof(cellist_shard);
+    return heads_.size_bytes() + pool_nodes_with(capacity_nodes) * node_bytes_ +
+           counters_with(capacity_nodes) * sizeof(cellist_shard);
 }
 
 std::uint64_t ListStorage::bytes() const {
@@ -94,7 +113,7 @@ const ListStorage::Spare* ListStorage::spare() {
     const std::uint64_t all = bytes() + nodes_.size_bytes() + heads * sizeof(cl_uint);
     if (all > options_.budget_bytes || all > device_->info.global_memory_bytes) return nullptr;
     try {
-        Spare made{Memory(device_, capacity_nodes_, node_bytes_, "second pool"),
+        Spare made{Memory(device_, pool_nodes(), node_bytes_, "second pool"),
                    Memory(device_, heads, sizeof(cl_uint), "second head buffer")};
         // Some drivers find out only at the first use whether they have the memory.
         constexpr cl_uchar zero = 0;
@@ -108,7 +127,7 @@ const ListStorage::Spare* ListStorage::spare() {
     return &*spare_;
 }
 
-void ListStorage::exchange_spare() noexcept {
+void ListStorage::adopt_spare() noexcept {
     std::swap(nodes_, spare_->nodes);
     std::swap(heads_, spare_->heads);
 }
@@ -117,7 +136,7 @@ std::optional<std::string> ListStorage::refusal(std::uint64_t capacity_nodes) co
     const std::uint64_t allocation = device_->info.max_allocation_bytes;
     const std::uint64_t limit =
         std::min<std::uint64_t>(allocation / node_bytes_, CELLIST_CAPACITY_NODES_MAX);
-    if (capacity_nodes > limit)
+    if (pool_nodes_with(capacity_nodes) > limit)
         return "capacity of " + std::to_string(capacity_nodes) + " nodes of " +
                std::to_string(node_bytes_) + " bytes exceeds this device's limit of " +
                std::to_string(limit) + " nodes (" + mebibytes(allocation) +
@@ -156,20 +175,21 @@ void ListStorage::allocate_pool(std::uint64_t capacity_nodes) {
     nodes_ = Memory();
     spare_.reset();
     const cl_uint bits = shard_bits_for(capacity_nodes, options_.allocation);
-    shards_ = Memory(device_, (std::uint64_t{1} << bits) + 1, sizeof(cellist_shard), "counters");
+    shards_ = Memory(device_, counters_with(capacity_nodes), sizeof(cellist_shard), "counters");
     shard_bits_ = bits;
-    nodes_ = Memory(device_, capacity_nodes, node_bytes_, "pool");
+    nodes_ = Memory(device_, pool_nodes_with(capacity_nodes), node_bytes_, "pool");
     capacity_nodes_ = capacity_nodes;
 }
 
 cl::Event ListStorage::read_counters(Shards& shards) const {
-    shards.resize((std::size_t{1} << shard_bits_) + 1);
+    shards.resize(shards_.size_bytes() / sizeof(cellist_shard));
     return shards_.read_later(shards.data(), shards.size() * sizeof(cellist_shard));
 }
 
-ListStorage::Counters ListStorage::sum(const Shards& shards) {
+ListStorage::Counters ListStorage::sum(const Shards& shards, cl_uint hands) {
     Counters sum;
-    for (const cellist_shard& shard : shards) {
+    const std::size_t count = shards.size() - hands - elements_of_owners(hands);
+    for (const cellist_shard& shard : std::span(shards).first(count)) {
         sum.allocated += shard.allocated;
         sum.dropped += wide(shard.dropped_low, shard.dropped_high);
         sum.rejected += wide(shard.rejected_low, shard.rejected_high);
@@ -177,22 +197,43 @@ ListStorage::Counters ListStorage::sum(const Shards& shards) {
         sum.open_reservations += shard.open_reservations;
         sum.missing += wide(shard.missing_low, shard.missing_high);
     }
+    for (const cellist_shard& element : std::span(shards).subspan(count, hands)) {
+        const auto hand = std::bit_cast<cellist_hand>(element);
+        sum.allocated -= (hand.last - hand.node) + (hand.end - hand.next);
+    }
     return sum;
 }
 
-void ListStorage::clear_counters() {
-    constexpr cl_uint zero = 0;
-    shards_.fill(&zero, sizeof zero, shards_.size_bytes());
+void ListStorage::clear_heads_and_counters(cl_uint head, std::uint64_t first_word,
+                                           std::uint64_t words) {
+    if (!clear_)
+        clear_.emplace(device_,
+                       Source{.text = std::string(kernels::clear_cl), .file_name = "clear.cl"},
+                       "cellist_clear", Definitions{});
+    const std::uint64_t counter_words = shards_.size_bytes() / sizeof(cl_uint);
+    Arguments arguments;
+    arguments.add(heads_.cl());
+    arguments.add(cl_ulong{first_word});
+    arguments.add(cl_ulong{words});
+    arguments.add(head);
+    arguments.add(shards_.cl());
+    arguments.add(static_cast<cl_uint>(counter_words));
+    clear_->enqueue(Range::padded(std::max(words, counter_words)), arguments);
 }
 
 void ListStorage::fill_heads(cl_uint value, std::uint64_t first_word, std::uint64_t words) {
-    const std::uint64_t all = heads_.size_bytes() / sizeof value;
-    words = std::min(words, all - first_word);
     if (words == 0) return;
-    const cl_int code =
+    check(
+        "clEnqueueFillBuffer",
         clEnqueueFillBuffer(device_->ordered_queue()(), heads_.cl()(), &value, sizeof value,
-                            first_word * sizeof value, words * sizeof value, 0, nullptr, nullptr);
-    if (code != CL_SUCCESS) throw OpenClError("clEnqueueFillBuffer", code);
+                            first_word * sizeof value, words * sizeof value, 0, nullptr, nullptr));
+}
+
+void ListStorage::make_pool(std::uint64_t capacity_nodes) {
+    if (const auto reason = refusal(capacity_nodes))
+        throw OverflowError("a slice of " + std::to_string(slice_.cells) + " cells: " + *reason,
+                            {.attempted = capacity_nodes, .dropped = capacity_nodes});
+    allocate_pool(capacity_nodes);
 }
 
 void ListStorage::grow_pool(std::uint64_t capacity_nodes, const BuildReport& report) {

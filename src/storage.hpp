@@ -71,13 +71,18 @@ public:
                                                   std::uint64_t cells) const = 0;
     /// The most nodes that the policy lets the pool have.
     [[nodiscard]] std::uint64_t most_nodes() const;
-    /// Makes room for such lists in the slice, if the policy is to grow.
+    /// Makes room for such lists in the slice, if the policy is to grow. Throws OverflowError.
     virtual void reserve(std::uint64_t total, std::uint64_t longest) = 0;
 
     /// Adds what CELLIST_LISTS declares.
     void add_to(Arguments& arguments) const;
 
+    /// Records that surely fit.
     [[nodiscard]] std::uint64_t capacity_nodes() const { return capacity_nodes_; }
+    /// Nodes there are; more than that where threads have some in their hands.
+    [[nodiscard]] std::uint64_t pool_nodes() const { return pool_nodes_with(capacity_nodes_); }
+    /// Elements of the counters, hands of threads included.
+    [[nodiscard]] std::uint64_t counters() const { return counters_with(capacity_nodes_); }
     /// Device memory of all buffers.
     [[nodiscard]] std::uint64_t bytes() const;
     [[nodiscard]] std::uint64_t cells() const { return shape_.cells(); }
@@ -91,8 +96,9 @@ public:
     /// Makes it the first time, and keeps it as long as the pool. Null where the budget or the device
     /// has no room for it.
     [[nodiscard]] const Spare* spare();
-    /// The spare nodes and heads take the place of the pool's, of linked lists, and these become spare.
-    void exchange_spare() noexcept;
+    /// The spare nodes and heads take the place of the pool's, and these become spare: linked lists have
+    /// moved, and nothing else is in the pool.
+    virtual void adopt_spare() noexcept;
     /// The mode in which the lists are read.
     [[nodiscard]] cl_uint mode() const { return mode_; }
     /// Records in the lists.
@@ -120,6 +126,9 @@ protected:
     virtual void make_whole(bool without_pool) = 0;
 
     [[nodiscard]] const RecordType& record() const { return definitions_.records.back(); }
+    [[nodiscard]] std::uint64_t pool_nodes_with(std::uint64_t capacity_nodes) const;
+    /// Elements of the counters, hands and their owners included.
+    [[nodiscard]] std::uint64_t counters_with(std::uint64_t capacity_nodes) const;
     [[nodiscard]] std::uint64_t bytes_with(std::uint64_t capacity_nodes) const;
     /// Why the pool cannot have this capacity, if it cannot.
     [[nodiscard]] std::optional<std::string> refusal(std::uint64_t capacity_nodes) const;
@@ -130,16 +139,21 @@ protected:
     [[nodiscard]] bool empties_pool(bool without_pool) const {
         return options_.overflow == Overflow::grow && (without_pool || nodes_.cl()() == nullptr);
     }
+    /// allocate_pool() for a slice. Throws OverflowError if a limit forbids it.
+    void make_pool(std::uint64_t capacity_nodes);
     /// allocate_pool() for what a build demands. Throws OverflowError where builds demand more in every
     /// pass: the kernel does not repeat itself.
     void grow_pool(std::uint64_t capacity_nodes, const BuildReport& report);
     /// Enqueues the reading of the counters: they are there when the event has completed.
     [[nodiscard]] cl::Event read_counters(Shards& shards) const;
-    [[nodiscard]] static Counters sum(const Shards& shards);
-    void clear_counters();
-    /// Sets the heads from a word on. Does not block.
-    void fill_heads(cl_uint value, std::uint64_t first_word = 0,
-                    std::uint64_t words = ~std::uint64_t{0});
+    /// Of counters that are followed by so many hands. What is in these counts as free.
+    [[nodiscard]] static Counters sum(const Shards& shards, cl_uint hands);
+    /// The hands of threads with a pool of this capacity: see threads.clh.
+    [[nodiscard]] virtual cl_uint hands_with(std::uint64_t) const { return 0; }
+    /// Sets words of the heads, and clears all counters. Does not block.
+    void clear_heads_and_counters(cl_uint head, std::uint64_t first_word, std::uint64_t words);
+    /// Sets words of the heads. Does not block.
+    void fill_heads(cl_uint value, std::uint64_t first_word, std::uint64_t words);
     /// A report of the counters.
     void update(BuildReport& report, const Counters& counters, std::uint64_t stored);
     /// Throws OverflowError if the policy or a limit forbids a pool of `demand` nodes.
@@ -179,6 +193,7 @@ protected:
     Memory nodes_;
     Memory shards_;
     std::optional<Spare> spare_;
+    std::optional<Kernel> clear_;
     Shards counters_;  ///< of the last pass
     Arrival reading_;  ///< what a review waits for: the last reading of the pass
 };

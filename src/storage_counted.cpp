@@ -17,8 +17,7 @@ CountedStorage::CountedStorage(std::shared_ptr<DeviceState> device, const Defini
 }
 
 void CountedStorage::clear() {
-    fill_heads(0);
-    clear_counters();
+    clear_heads_and_counters(0, 0, counts_at() + shape_.cells());
     stored_ = 0;
 }
 
@@ -27,8 +26,7 @@ void CountedStorage::prepare_pass() {
         clear();
         mode_ = CELLIST_COUNTING;
     } else {
-        fill_heads(0, counts_at());
-        clear_counters();
+        clear_heads_and_counters(0, counts_at(), shape_.cells());
     }
 }
 
@@ -50,7 +48,7 @@ bool CountedStorage::finish_pass() {
 }
 
 bool CountedStorage::review_pass(BuildReport& report) {
-    const Counters counting = sum(counting_);
+    const Counters counting = sum(counting_, 0);
     const std::uint64_t demand = demand_.sum + counting.dropped;
     const std::uint64_t kept = std::min<std::uint64_t>(demand_.sum, capacity_nodes_);
     if (!counted_) {
@@ -61,7 +59,7 @@ bool CountedStorage::review_pass(BuildReport& report) {
         counted_ = true;
         return false;
     }
-    const Counters filled = sum(counters_);
+    const Counters filled = sum(counters_, 0);
     update(report, filled, kept);
     const std::uint64_t unfilled = filled_.found.unfilled;
     if (unfilled > 0 || filled.dropped != demand - kept || filled.rejected != counting.rejected)
@@ -99,12 +97,12 @@ std::uint64_t CountedStorage::nodes_for(std::uint64_t total, std::uint64_t, std:
 }
 
 void CountedStorage::reserve(std::uint64_t total, std::uint64_t) {
-    if (options_.overflow == Overflow::grow && capacity_nodes_ < total) allocate_pool(total);
+    if (options_.overflow == Overflow::grow && capacity_nodes_ < total) make_pool(total);
 }
 
 std::vector<cl_uint> CountedStorage::counts(BuildReport& report) {
     reading_.wait();
-    const Counters counting = sum(counting_);
+    const Counters counting = sum(counting_, 0);
     update(report, counting, 0);
     report.dropped += demand_.sum;
     report.attempted += demand_.sum;
@@ -140,7 +138,7 @@ std::function<Validation()> CountedStorage::validate() {
         // Sound lists that do not add up to what was stored have a wrong end; counts that do not add
         // up to what was stored and dropped are wrong.
         const cellist_findings& found = check->findings.found;
-        const Counters counters = sum(check->shards);
+        const Counters counters = sum(check->shards, 0);
         const std::uint64_t missing = kept > found.nodes ? kept - found.nodes : found.nodes - kept;
         const std::uint64_t counted = check->inserted.sum + found.unfilled;
         const std::uint64_t expected = kept + counters.dropped;

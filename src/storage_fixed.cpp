@@ -31,8 +31,7 @@ void FixedStorage::set_slots(std::uint64_t slots) {
 }
 
 void FixedStorage::clear() {
-    fill_heads(0);
-    clear_counters();
+    clear_heads_and_counters(0, 0, shape_.cells());
     stored_ = 0;
 }
 
@@ -44,7 +43,7 @@ bool FixedStorage::finish_pass() {
 }
 
 bool FixedStorage::review_pass(BuildReport& report) {
-    const Counters counters = sum(counters_);
+    const Counters counters = sum(counters_, 0);
     update(report, counters, in_slots_.sum);
     if (counters.dropped == 0 || options_.overflow == Overflow::drop) return true;
 
@@ -81,7 +80,10 @@ std::uint64_t FixedStorage::nodes_for(std::uint64_t, std::uint64_t longest,
 }
 
 void FixedStorage::reserve(std::uint64_t, std::uint64_t longest) {
-    if (options_.overflow == Overflow::grow && slots_ < longest) set_slots(longest);
+    if (options_.overflow != Overflow::grow || slots_ >= longest) return;
+    slots_ = 0;
+    make_pool(nodes_with(longest));
+    slots_ = static_cast<cl_uint>(longest);
 }
 
 std::function<Validation()> FixedStorage::validate() {
@@ -103,7 +105,7 @@ std::function<Validation()> FixedStorage::validate() {
         const std::uint64_t stored = check->in_slots.sum;
         const std::uint64_t lost = stored > expected ? stored - expected : expected - stored;
         const std::uint64_t over = check->all.sum - stored;
-        const Counters counters = sum(check->shards);
+        const Counters counters = sum(check->shards, 0);
         // Counts end at their limit, where what was dropped goes on.
         const bool sound = check->all.longest < CELLIST_CELL_COUNT_MAX ? over == counters.dropped
                                                                        : over <= counters.dropped;

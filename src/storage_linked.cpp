@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 
 #include "cellist_kernels.hpp"
 #include "storages.hpp"
@@ -8,6 +9,9 @@ namespace cellist::detail {
 namespace {
 
 constexpr std::uint64_t default_capacity_nodes = 65536;
+
+/// What lies in the hands of threads is at most this part of a pool; smaller pools have none.
+constexpr std::uint64_t hands_part = 16;
 
 }  // namespace
 
@@ -24,9 +28,27 @@ LinkedStorage::LinkedStorage(std::shared_ptr<DeviceState> device, const Definiti
     clear();
 }
 
+/// Twice as many as threads, so that their table is never crowded. Where the pool does not grow it holds exactly
+/// what the options say: no thread may have free nodes for itself.
+cl_uint LinkedStorage::hands_with(std::uint64_t capacity_nodes) const {
+    if (!device_->info.threads || options_.overflow != Overflow::grow ||
+        options_.allocation != Allocation::sharded)
+        return 0;
+    const cl_uint hands = std::bit_ceil(std::max(2 * device_->info.compute_units, 8U));
+    const std::uint64_t nodes = std::uint64_t{hands} * CELLIST_BLOCK_NODES;
+    if (hands_part * nodes > capacity_nodes || capacity_nodes > CELLIST_CAPACITY_NODES_MAX - nodes)
+        return 0;
+    // Nor where that would take more memory than there may be.
+    const std::uint64_t pool_bytes = (capacity_nodes + nodes) * node_bytes_;
+    const std::uint64_t counters = (1u << CELLIST_SHARD_BITS_MAX) + 1 + 2 * std::uint64_t{hands};
+    const bool fits = pool_bytes <= device_->info.max_allocation_bytes &&
+                      heads_.size_bytes() + pool_bytes + counters * sizeof(cellist_shard) <=
+                          options_.budget_bytes;
+    return fits ? hands : 0;
+}
+
 void LinkedStorage::clear() {
-    fill_heads(CELLIST_NONE);
-    clear_counters();
+    clear_heads_and_counters(CELLIST_NONE, 0, shape_.cells());
     stored_ = 0;
     unlinked_ = 0;
 }
@@ -37,7 +59,7 @@ bool LinkedStorage::finish_pass() {
 }
 
 bool LinkedStorage::review_pass(BuildReport& report) {
-    const Counters counters = sum(counters_);
+    const Counters counters = sum(counters_, hands_with(capacity_nodes_));
     unlinked_ = counters.open_reservations == 0 ? 0 : count_unlinked();
     update(report, counters, counters.allocated - unlinked_);
     if (counters.dropped == 0 || options_.overflow == Overflow::drop) return true;
@@ -58,7 +80,7 @@ std::uint64_t LinkedStorage::count_unlinked() {
     Arguments arguments;
     add_to(arguments);
     arguments.add(memory.cl());
-    unlinked_kernel_->enqueue(Range::padded(capacity_nodes_), arguments);
+    unlinked_kernel_->enqueue(Range::padded(pool_nodes()), arguments);
     cl_uint count = 0;
     memory.read(&count, sizeof count);
     return count;
@@ -80,7 +102,12 @@ void LinkedStorage::set_slice(const Slice& slice) {
 /// The pool has room for no more than the records of the slice, so reservations take no nodes.
 void LinkedStorage::reserve(std::uint64_t total, std::uint64_t) {
     reserves_ = false;
-    if (options_.overflow == Overflow::grow && capacity_nodes_ < total) allocate_pool(total);
+    if (options_.overflow == Overflow::grow && capacity_nodes_ < total) make_pool(total);
+}
+
+void LinkedStorage::adopt_spare() noexcept {
+    ListStorage::adopt_spare();
+    unlinked_ = 0;
 }
 
 std::function<Validation()> LinkedStorage::validate() {
@@ -92,7 +119,7 @@ std::function<Validation()> LinkedStorage::validate() {
     };
     const auto check = std::make_shared<Check>();
     constexpr cl_uint zero = 0;
-    check->reached = Memory(device_, (capacity_nodes_ + 31) / 32, sizeof zero, "validation buffer");
+    check->reached = Memory(device_, (pool_nodes() + 31) / 32, sizeof zero, "validation buffer");
     check->reached.fill(&zero, sizeof zero, check->reached.size_bytes());
     if (!validate_)
         validate_.emplace(kernel("cellist_validate_linked", kernels::validate_linked_cl, mode_));
@@ -101,10 +128,10 @@ std::function<Validation()> LinkedStorage::validate() {
     arguments.add(check->reached.cl());
     check->done = find(check->findings, *validate_, arguments);
     check->done = read_counters(check->shards);
-    return [check, unlinked = unlinked_] {
+    return [check, unlinked = unlinked_, hands = hands_with(capacity_nodes_)] {
         check->done.wait();
         const cellist_findings& found = check->findings.found;
-        const Counters counters = sum(check->shards);
+        const Counters counters = sum(check->shards, hands);
         // A list that leads to an unlinked node is broken there, with that node counted in.
         const std::uint64_t linked = counters.allocated - unlinked;
         return Validation{found.broken, found.repeated,

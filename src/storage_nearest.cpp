@@ -37,8 +37,7 @@ NearestStorage::NearestStorage(std::shared_ptr<DeviceState> device, const Defini
 }
 
 void NearestStorage::clear() {
-    fill_heads(0, 0, shape_.cells());
-    clear_counters();
+    clear_heads_and_counters(0, 0, shape_.cells());
     stored_ = 0;
 }
 
@@ -63,6 +62,12 @@ void NearestStorage::prepare_pass() {
 void NearestStorage::prepare_ranking() {
     const std::uint64_t words = row(CELLIST_ROW_LEAST + slots_ + rank_words_ + 1);
     if (heads_.size_bytes() < words * sizeof(cl_uint)) {
+        const std::uint64_t all = bytes() - heads_.size_bytes() + words * sizeof(cl_uint);
+        if (all > options_.budget_bytes)
+            throw Error("records that are equal in " + options_.nearest_by +
+                        " take another word of thresholds: " + std::to_string(all) +
+                        " bytes in all, over the budget of " +
+                        std::to_string(options_.budget_bytes) + ": raise budget_bytes");
         Memory heads(device_, words, sizeof(cl_uint), "head buffer");
         if (heads_.size_bytes() > 0)
             opencl([&] {
@@ -75,13 +80,12 @@ void NearestStorage::prepare_ranking() {
 }
 
 /// Runs one of the kernels of nearest.cl over all cells.
-void NearestStorage::run(std::optional<Kernel>& kernel, const char* name, const Memory* choice) {
-    if (!kernel) kernel
-        .emplace(this->kernel(name, kernels::nearest_cl, CELLIST_CHOOSING));
+void NearestStorage::run(std::optional<Kernel>& step, const char* name, const Memory* choice) {
+    if (!step) step.emplace(kernel(name, kernels::nearest_cl, CELLIST_CHOOSING));
     Arguments arguments;
     add_to(arguments);
     if (choice != nullptr) arguments.add(choice->cl());
-    kernel->enqueue(Range::padded(shape_.cells()), arguments);
+    step->enqueue(Range::padded(shape_.cells()), arguments);
 }
 
 bool NearestStorage::finish_pass() {
@@ -105,7 +109,7 @@ bool NearestStorage::finish_pass() {
 }
 
 bool NearestStorage::review_pass(BuildReport& report) {
-    update(report, sum(counters_), kept_.sum);
+    update(report, sum(counters_, 0), kept_.sum);
     // Records that are equal in every word are the same: any of them will do.
     if (choice_.undecided == 0 || rank_words_ >= choice_.words) return true;
     ranked_ = false;
@@ -135,7 +139,7 @@ std::function<Validation()> NearestStorage::validate() {
         return Validation{check->all.longest > slots ? std::uint64_t{1} : std::uint64_t{0},
                           0,
                           stored > expected ? stored - expected : expected - stored,
-                          sum(check->shards).late,
+                          sum(check->shards, 0).late,
                           {}};
     };
 }

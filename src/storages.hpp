@@ -18,11 +18,13 @@ public:
     std::uint64_t nodes_for(std::uint64_t total, std::uint64_t longest,
                             std::uint64_t cells) const override;
     void reserve(std::uint64_t total, std::uint64_t longest) override;
+    void adopt_spare() noexcept override;
 
 private:
     bool finish_pass() override;
     bool review_pass(BuildReport& report) override;
     void make_whole(bool without_pool) override;
+    [[nodiscard]] cl_uint hands_with(std::uint64_t capacity_nodes) const override;
 
     [[nodiscard]] std::uint64_t count_unlinked();
 
@@ -109,7 +111,7 @@ private:
     void make_whole(bool without_pool) override;
 
     void prepare_ranking();
-    void run(std::optional<Kernel>& kernel, const char* name, const Memory* choice = nullptr);
+    void run(std::optional<Kernel>& step, const char* name, const Memory* choice = nullptr);
     [[nodiscard]] std::uint64_t row(std::uint64_t number) const { return number * shape_.cells(); }
 
     CellScan scan_;

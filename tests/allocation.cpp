@@ -191,6 +191,64 @@ TEST_CASE("every way to insert grows the pool to the exact demand") {
         }
 }
 
+// ---- the hands of threads ----------------------------------------------------------------------
+
+TEST_CASE("a pool that grows holds its capacity in one pass, whatever ways to insert are mixed") {
+    // With threads that have nodes of their own, where the device has such, and without.
+    for (const char* options : {"", "-DCELLIST_THREADS=0"}) {
+        constexpr cl_uint items = 4096;
+        constexpr cl_uint each = 16;
+        constexpr std::uint64_t capacity = kernels.size() * items * each;
+        INFO("build options '" << options << "'");
+        Lists<Item> lists(device(), {50}, {.capacity_nodes = capacity});
+        std::vector<Kernel> inserting;
+        for (const char* name : kernels)
+            inserting.emplace_back(device(), Source{.text = source, .options = options}, name,
+                                   lists);
+        const BuildReport report = lists.build([&] {
+            for (Kernel& kernel : inserting) kernel.run(items, lists, cl_uint{3}, each);
+        });
+        require_complete(report, capacity);
+        REQUIRE(report.passes == 1);
+        REQUIRE(report.capacity_nodes == capacity);
+        require_sound(lists, capacity);
+        std::vector<std::size_t> found(items * each);
+        for (const Item& item : lists.download().records()) ++found.at(item.id);
+        REQUIRE(found == std::vector<std::size_t>(items * each, kernels.size()));
+        lists.sort(&Item::id);
+        require_sound(lists, capacity);
+    }
+}
+
+TEST_CASE("a node in the hand of a thread is free") {
+    Lists<Item> lists(device(), {50}, {.capacity_nodes = 262'144});
+    Kernel insert(device(), source, "by_insert", lists);
+    lists.build(insert, 100, cl_uint{3}, cl_uint{1});
+    require_sound(lists, 100);
+    // `found`: such nodes; the first cell is made to lead to one.
+    Kernel steal(device(), R"(
+#include <cellist/lists.clh>
+kernel void steal(CELLIST_LISTS(Item, lists), global uint* found)
+{
+    volatile global cellist_hand* hands = cellist_hands(lists_shards, lists_view);
+    *found = 0;
+    for (uint i = 0; i < lists_view.hands; ++i) {
+        if (hands[i].node != hands[i].last) lists_heads[0] = hands[i].node;
+        *found += hands[i].last - hands[i].node + hands[i].end - hands[i].next;
+    }
+}
+)",
+                 "steal", lists);
+    Buffer<cl_uint> found(device(), 1);
+    steal.run(1, lists, found);
+    if (!device().info().threads) {
+        REQUIRE(found.download()[0] == 0);
+        return;
+    }
+    REQUIRE(found.download()[0] % 256 == 256 - 100);
+    REQUIRE(lists.validate().broken_links == 1);
+}
+
 // ---- a whole work-group ------------------------------------------------------------------------
 
 constexpr auto all_source = R"(

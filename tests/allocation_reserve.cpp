@@ -318,14 +318,20 @@ TEST_CASE("nodes that are reserved and not linked are not stored, and no list le
     for (cl_uint i = 0; i < 100; ++i) plan.add(8, 5);
     REQUIRE(run(lists, plan).report.stored == 500);
     require_sound(lists, 500);
-    Kernel corrupt(device(), source, "link_unlinked", lists);
-    Buffer<cl_uint> found(device(), 1);
-    found.fill(0);
-    corrupt.run(1, lists, cl_uint{4}, found);
-    REQUIRE(found.download()[0] == (takes_nodes ? 1u : 0u));
-    const Validation validation = lists.validate();
-    REQUIRE(validation.ok() != takes_nodes);
-    if (takes_nodes) REQUIRE(validation.first_bad_cell == 4);
+    lists.sort(&Item::key);
+    require_sound(lists, 500);
+    REQUIRE(run(lists, plan).report.stored == 500);
+    // Where no nodes were reserved, what lies in the pool is anything.
+    if (takes_nodes) {
+        Kernel corrupt(device(), source, "link_unlinked", lists);
+        Buffer<cl_uint> found(device(), 1);
+        found.fill(0);
+        corrupt.run(1, lists, cl_uint{4}, found);
+        REQUIRE(found.download()[0] == 1);
+        const Validation validation = lists.validate();
+        REQUIRE_FALSE(validation.ok());
+        REQUIRE(validation.first_bad_cell == 4);
+    }
 
     // The next build knows nothing of it.
     Plan next;

@@ -103,6 +103,25 @@ TEST_CASE("ties are decided by the other members, the same in every order of ins
     }
 }
 
+TEST_CASE("ties that take more than the budget end a build, and leave the lists usable") {
+    ListsOptions options = nearest(10, "key");
+    options.budget_bytes = Lists<Item>(device(), {7}, options).pool_bytes();
+    Lists<Item> lists(device(), {7}, options);
+    Inserts<Item> ties, others;
+    for (cl_uint i = 0; i < 300; ++i) {
+        ties.add(i % 7, {1.0f, i});
+        others.add(i % 7, {static_cast<cl_float>(i), i});
+    }
+    Inserter inserter(lists);
+    require_report(inserter.build(lists, others), 300, 0, 70);
+    const auto error = error_of([&] { inserter.build(lists, ties); });
+    INFO(error.what());
+    REQUIRE(contains(error.what(), "budget"));
+    REQUIRE(lists.lengths().total == 0);
+    require_report(inserter.build(lists, others), 300, 0, 70);
+    require_first(lists, others, 10, by_key);
+}
+
 TEST_CASE("records that are the same in every member are kept as often as there is room") {
     Inserts<Item> inserts;
     for (cl_uint i = 0; i < 1000; ++i) inserts.add(i % 3, {2.5f, 7});

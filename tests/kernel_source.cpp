@@ -76,7 +76,7 @@ TEST_CASE("the line of an error does not depend on the includes and types before
 }
 
 TEST_CASE("sources and logs of any length and content end in a kernel or in the library's error") {
-    constexpr auto kernel = "kernel void nothing(void) {}\n";
+    constexpr auto kernel = "kernel void nothing(uint parameter) {}\n";
     const std::string blanks(1 << 20, ' '), name(1 << 18, 'a');
     for (const std::string& text :
          {blanks, "//" + blanks + "\n", blanks + "#" + blanks + "include <cellist/lists.clh>\n",
@@ -99,7 +99,8 @@ TEST_CASE("the name of a file may have any characters") {
         const auto error = error_of<OpenClError>([&] { Kernel(device(), source, "broken"); });
         INFO(error.what());
         REQUIRE(contains(error.log(), "oops"));
-        Kernel(device(), Source{.text = "kernel void good(void) {}", .file_name = name}, "good");
+        Kernel(device(), Source{.text = "kernel void good(uint parameter) {}", .file_name = name},
+               "good");
     }
 }
 

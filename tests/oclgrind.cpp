@@ -1,6 +1,6 @@
 // Every kernel of the library once, at sizes that a simulator runs in seconds. ctest runs these tests
 // under Oclgrind too, which reports invalid accesses and data races.
-#include "support/sorted.hpp"
+#include "support/inserts.hpp"
 #include "support/storages.hpp"
 
 namespace cellist::test {
@@ -34,31 +34,6 @@ TEST_CASE("a small pool of several shards overflows", "[oclgrind]") {
     REQUIRE(report.dropped > 0);
     REQUIRE(report.stored + report.dropped == 2200);
     require_sound(lists, report.stored);
-}
-
-TEST_CASE("short and long lists are sorted", "[oclgrind]") {
-    CELLIST_EACH_STORAGE(storage);
-    CELLIST_RANDOM(random, 174u);
-    Inserts<Item> inserts;
-    const std::array<cl_uint, 6> lengths{1, 20, 40, 300, 600, 0};
-    for (cl_uint cell = 0; cell < lengths.size(); ++cell)
-        for (cl_uint i = 0; i < lengths[cell]; ++i)
-            inserts.add(cell, {static_cast<cl_float>(below(random, 50)), i});
-    const Oracle<Item> oracle = oracle_of(inserts, lengths.size());
-    for (const cl_device_type division :
-         {cl_device_type{CL_DEVICE_TYPE_CPU}, cl_device_type{CL_DEVICE_TYPE_GPU}}) {
-        INFO("work is divided as on a " << (division == CL_DEVICE_TYPE_CPU ? "CPU" : "GPU"));
-        Lists<Item> lists(device(), {lengths.size()}, {.storage = storage});
-        lists.core().sort_as_on(division);
-        Inserter(lists).build(lists, inserts);
-        lists.partial_sort(&Item::key, 4);
-        require_sound(lists, inserts.size());
-        lists.sort(&Item::key);
-        require_sound(lists, inserts.size());
-        require_sorted(lists.download(), oracle, by_key);
-        lists.sort_async(&Item::id);
-        require_sorted(lists.download(), oracle, by_id);
-    }
 }
 
 TEST_CASE("a small container chooses its storage", "[oclgrind]") {

@@ -150,6 +150,36 @@ TEST_CASE("a list that is longer than the pool throws, or is dropped from") {
     }
 }
 
+TEST_CASE("a list that is over the budget throws") {
+    CELLIST_EACH_STORAGE(storage);
+    CELLIST_RANDOM(random, 236u);
+    Inserts<Item> inserts = random_inserts(93, 50, random);
+    for (cl_uint i = 0; i < 200; ++i) inserts.add(20, {0.0f, 93 + i});
+    const Lists<Item> empty(device(), {50}, {.storage = storage, .capacity_nodes = 0, .slots = 0});
+    const std::uint64_t hot = oracle_of(inserts, 50).count(20);
+    const std::uint64_t node_bytes =
+        sizeof(Item) + (storage == Storage::linked ? sizeof(cl_uint) : 0);
+    for (const std::uint64_t missing_bytes : {0u, 1u}) {
+        Lists<Item> lists(device(), {50},
+                          {.storage = storage,
+                           .capacity_nodes = 0,
+                           .slots = 0,
+                           .budget_bytes = empty.pool_bytes() + hot * node_bytes - missing_bytes});
+        Scene scene(lists, inserts);
+        Collected collected(lists);
+        const auto build = [&] {
+            return lists.build_slices([&] { scene.insert(lists); }, std::ref(collected));
+        };
+        if (missing_bytes > 0) {
+            REQUIRE(contains(error_of<OverflowError>(build).what(), "budget_bytes"));
+            REQUIRE(collected.next_cell == 20);
+            require_sound(lists, 0);
+        } else {
+            REQUIRE(build().stored == 293);
+        }
+    }
+}
+
 TEST_CASE("an error inside of a slice leaves an empty container") {
     CELLIST_EACH_STORAGE(storage);
     CELLIST_RANDOM(random, 233u);

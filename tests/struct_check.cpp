@@ -59,7 +59,8 @@ TEST_CASE("a struct whose layout differs on the device is refused, naming the st
     REQUIRE(contains(offset, "layout"));
     REQUIRE(contains(offset, "WrongOffset"));
     REQUIRE_THROWS_AS(
-        Kernel(device(), "kernel void nothing(void) {}", "nothing", type<WrongOffset>), Error);
+        Kernel(device(), "kernel void nothing(uint parameter) {}", "nothing", type<WrongOffset>),
+        Error);
 }
 
 namespace first {

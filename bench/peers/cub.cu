@@ -9,7 +9,7 @@
 //     cub_index      indices as values, through which the records are read
 //   segmented_sort   DeviceSegmentedSort of lists of one length by their key:
 //     cub_values     with the rest of the record as value
-//     cub_index      with indices as values
+//     cub_gather     with indices as values, then the rests gathered by them
 //
 // Host time from the first launch until the device is done; the input lies in memory, temporary memory
 // is allocated before. Results are checked once a case, before it is timed.
@@ -342,9 +342,16 @@ __global__ void count_unsorted(const std::uint32_t* keys, std::uint32_t count, s
     if (at < count && at % length != 0 && keys[at] < keys[at - 1]) atomicAdd(unsorted, 1);
 }
 
-template <class Value>
+__global__ void gather_rests(const std::uint32_t* indices, const uint2* from, uint2* to,
+                             std::uint32_t count) {
+    const std::uint32_t at = global_id();
+    if (at < count) to[at] = from[indices[at]];
+}
+
+/// Sorts keys with values, and calls `finish` with the sorted values: after it the records are sorted.
+template <class Value, class Finish>
 void sort_segments(Report& report, const Sampling& sampling, const Workload& w, const char* peer,
-                   const std::uint32_t* keys, const Value* values) {
+                   const std::uint32_t* keys, const Value* values, const Finish& finish) {
     const std::uint32_t length = w.nodes / w.cells();
     const std::string name = std::string("segmented_sort/peer:") + peer + "/" + w.name();
     Buffer<std::uint32_t> offsets(w.cells() + 1), sorted_keys(w.nodes), unsorted(1), none(1);
@@ -357,7 +364,10 @@ void sort_segments(Report& report, const Sampling& sampling, const Workload& w, 
     };
     std::size_t bytes = temporary_bytes(sort);
     Buffer<char> memory(bytes);
-    const auto work = [&] { CHECK(sort(memory.get(), bytes)); };
+    const auto work = [&] {
+        CHECK(sort(memory.get(), bytes));
+        finish(sorted_values.get());
+    };
     host_seconds(work);
     CHECK(cudaMemset(unsorted.get(), 0, sizeof(std::uint32_t)));
     CHECK(cudaMemset(none.get(), 0, sizeof(std::uint32_t)));
@@ -372,8 +382,13 @@ void segmented_sort(Report& report, const Sampling& sampling, const Workload& w)
     store_lists<<<groups(w.nodes), group>>>(keys.get(), rests.get(), w.nodes, w.cells(),
                                             w.nodes / w.cells());
     store_indices<<<groups(w.nodes), group>>>(indices.get(), w.nodes);
-    sort_segments(report, sampling, w, "cub_values", keys.get(), rests.get());
-    sort_segments(report, sampling, w, "cub_index", keys.get(), indices.get());
+    sort_segments(report, sampling, w, "cub_values", keys.get(), rests.get(), [](uint2*) {});
+    Buffer<uint2> gathered(w.nodes);
+    sort_segments(report, sampling, w, "cub_gather", keys.get(), indices.get(),
+                  [&](const std::uint32_t* sorted) {
+                      gather_rests<<<groups(w.nodes), group>>>(sorted, rests.get(), gathered.get(),
+                                                               w.nodes);
+                  });
 }
 
 std::uint32_t number(const std::string& text) {

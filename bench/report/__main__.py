@@ -2,7 +2,10 @@
 
   merge --effort E --git HASH [--note TEXT] --out RESULTS.json OUTPUT.json...
                               results from the programs' output
+  merge-oit [--note TEXT] --out RESULTS.json FRAMES.json [GRID.json]
+                              the same of cellist-oit-frames and cellist-budget-grid
   ratios RESULTS.json         the table of ratios
+  goals RESULTS.json          the table of what is asked of transparency
   plots RESULTS.json DIRECTORY    plots, as SVG
   documents [--check]         tables and plots in the documentation from bench/results; --check changes
                               nothing, and exits with 1 where they do not agree
@@ -14,6 +17,8 @@ import sys
 
 import documents
 import figures
+import oit
+import oit_tables
 import plots
 import ratios
 import tables
@@ -24,6 +29,15 @@ def _merge(options):
                             options.note)
     results["ratios"] = ratios.compute(results)
     figures.save(results, options.out)
+
+
+def _merge_oit(options):
+    grid = figures.load(options.grid) if options.grid else None
+    figures.save(oit.merge(figures.load(options.frames), grid, options.note), options.out)
+
+
+def _goals(options):
+    print(oit_tables.goals_as_text(figures.load(options.results)))
 
 
 def _ratios(options):
@@ -58,6 +72,15 @@ def main():
     merge.add_argument("--out", required=True)
     merge.add_argument("outputs", nargs="+")
     merge.set_defaults(run=_merge)
+    merge_oit = commands.add_parser("merge-oit")
+    merge_oit.add_argument("--note", default="")
+    merge_oit.add_argument("--out", required=True)
+    merge_oit.add_argument("frames")
+    merge_oit.add_argument("grid", nargs="?")
+    merge_oit.set_defaults(run=_merge_oit)
+    goals = commands.add_parser("goals")
+    goals.add_argument("results")
+    goals.set_defaults(run=_goals)
     table = commands.add_parser("ratios")
     table.add_argument("results")
     table.set_defaults(run=_ratios)

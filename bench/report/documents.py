@@ -1,17 +1,19 @@
 """Tables and plots in the documentation, generated from bench/results/*.json.
 
-A table stands between the lines `<!-- results: NAME -->` and `<!-- end of results -->`.
+A table stands between the lines `<!-- results: NAME -->` and `<!-- end of results -->`. Results of
+transparency are in files that start with "oit-".
 """
 
 import pathlib
 import re
 
 import figures
+import oit_tables
 import plots
 import tables
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-DOCUMENTS = ("README.md", "docs/performance.md")
+DOCUMENTS = ("README.md", "docs/performance.md", "docs/transparency.md")
 PLOT_TITLES = {
     "throughput": "throughput against size",
     "ceiling": "inserts against the ceiling",
@@ -42,19 +44,29 @@ TABLES = {
 _BLOCK = re.compile(r"(<!-- results: (\w+) -->\n)(.*?)(<!-- end of results -->)", re.DOTALL)
 
 
+def _runs(paths):
+    """What was measured on GPUs comes first."""
+    runs = [{**figures.load(path), "file": path.stem} for path in sorted(paths)]
+    return sorted(runs, key=lambda results: results["kind"] != "gpu")
+
+
 def _contents():
     """What each generated file should hold, by path."""
-    paths = sorted((ROOT / "bench/results").glob("*.json"))
-    runs = [{**figures.load(path), "file": path.stem} for path in paths]
-    runs.sort(key=lambda results: results["kind"] != "gpu")
+    paths = set((ROOT / "bench/results").glob("*.json"))
+    oit_paths = {path for path in paths if path.stem.startswith("oit-")}
+    runs, oit_runs = _runs(paths - oit_paths), _runs(oit_paths)
+    generated = {name: table(runs) for name, table in TABLES.items()}
+    generated.update({name: table(oit_runs) for name, table in oit_tables.TABLES.items()})
     contents = {}
     for name in DOCUMENTS:
         path = ROOT / name
         text = path.read_text(encoding="utf-8")
-        contents[path] = _BLOCK.sub(lambda block: block[1] + TABLES[block[2]](runs) + "\n" + block[4], text)
+        contents[path] = _BLOCK.sub(lambda block: block[1] + generated[block[2]] + "\n" + block[4], text)
+    images = ROOT / "docs/images"
     for results in runs:
         for name, (_, svg) in _plots_of(results).items():
-            contents[ROOT / "docs/images" / name] = svg
+            contents[images / name] = svg
+    contents[images / "oit-fewer-layers.svg"] = plots.fewer_layers(oit_runs)
     return contents
 
 

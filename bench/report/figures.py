@@ -83,12 +83,12 @@ def load(path):
 
 
 def save(results, path):
-    """Writes results with a line for each figure and ratio."""
+    """Writes results with a line for each item of a list."""
     with open(path, "w", encoding="utf-8") as file:
-        lists = ("figures", "ratios")
-        head = {key: value for key, value in results.items() if key not in lists}
+        head = {key: value for key, value in results.items() if not isinstance(value, list)}
         file.write(json.dumps(head, indent=1)[:-2])
-        for key in lists:
-            lines = ",\n".join("  " + json.dumps(item) for item in results[key])
-            file.write(f',\n "{key}": [\n{lines}\n ]')
+        for key, items in results.items():
+            if isinstance(items, list):
+                lines = ",\n".join("  " + json.dumps(item) for item in items)
+                file.write(f',\n "{key}": [\n{lines}\n ]')
         file.write("\n}\n")

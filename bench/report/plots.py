@@ -31,12 +31,12 @@ def _document(width, height, parts):
 
 
 class _Panel:
-    """Lines over the number of nodes. `lines` is a list of (title, [(nodes, value)], dashed)."""
+    """Lines over a number, such as that of nodes. `lines` is a list of (title, [(number, value)], dashed)."""
 
     WIDTH, HEIGHT = 380, 260
     LEFT, TOP = 60, 60
 
-    def __init__(self, x, title, unit, lines, logarithmic):
+    def __init__(self, x, title, unit, lines, logarithmic, across="nodes", number=power_of_two):
         self.x = x + self.LEFT
         self.logarithmic = logarithmic
         lines = [line for line in lines if line[1]]
@@ -53,17 +53,18 @@ class _Panel:
             ticks = [(math.log10(step), f"{step:,.10g}") for step in steps if first <= step <= last]
             self.low, self.high = math.log10(first), math.log10(last)
         else:
-            self.low, self.high = 0, max(1.25, math.ceil(4 * max(values)) / 4)
-            ticks = [(i / 4, f"{i / 4:g}") for i in range(int(4 * self.high) + 1)]
+            step = next(step for step in (0.25, 0.5, 1, 2, 5, 10, 20, 50, 100) if max(values) <= 15 * step)
+            self.low, self.high = 0, max(1.25, step * math.ceil(max(values) / step))
+            ticks = [(i * step, f"{i * step:g}") for i in range(round(self.high / step) + 1)]
         for position, label in ticks:
             y = self.y(position)
             self.parts += [_line(self.x, y, self.x + self.WIDTH, y), _text(self.x - 6, y + 4, label, "end")]
         for bit in self.bits:
             x = self.x_of(2 ** bit)
             self.parts.append(_line(x, self.TOP, x, self.TOP + self.HEIGHT, "#eee"))
-            if bit % 2 == 0:
-                self.parts.append(_text(x, self.TOP + self.HEIGHT + 18, f"2^{bit}", "middle"))
-        self.parts.append(_text(self.x + self.WIDTH / 2, self.TOP + self.HEIGHT + 36, "nodes", "middle"))
+            if bit % 2 == 0 or len(self.bits) < 9:
+                self.parts.append(_text(x, self.TOP + self.HEIGHT + 18, number(2 ** bit), "middle"))
+        self.parts.append(_text(self.x + self.WIDTH / 2, self.TOP + self.HEIGHT + 36, across, "middle"))
         for index, (label, line, dashed) in enumerate(lines):
             self.draw(index, label, sorted(line), dashed)
 
@@ -150,6 +151,21 @@ def crossover(results):
                 parts.append(_text(x + width / 2, y + 15, f"{totals[1][0] / totals[0][0]:.1f} ×", "middle",
                                    extra='fill="white"'))
     return _document(left + width * len(READS) + 16, top + height * len(rows) + 16, parts)
+
+
+def fewer_layers(all_results):
+    """The nearest layers of gearworks against all: a line for each run of the benchmarks of transparency."""
+    def panel(x, title, unit, member):
+        lines = [(device_title(results),
+                  [(figure["layers"], figure[member]) for figure in results.get("fewer_layers", [])
+                   if figure["layers"] != "all" and figure[member] is not None], False)
+                 for results in all_results]
+        return _Panel(x, title, unit, lines, False, "nearest layers", str)
+
+    left = panel(0, "speed-up", "time of all layers / time", "speed_up")
+    right = panel(470, "picture", "PSNR against all layers, dB", "psnr_db")
+    return _document(940, 440, [_text(60, 24, "The nearest layers of gearworks, 1280×720", size=15),
+                                *left.parts, *right.parts])
 
 
 def draw(results):

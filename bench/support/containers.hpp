@@ -42,8 +42,10 @@ public:
         : workload_(workload), options_(options_for(workload, keeping)), inserts_(keeping.inserts) {
         const cellist::Device& device = suite.device();
         lists_.emplace_back(device, cellist::Shape{workload.cells()}, options_);
-        insert_.emplace(device, source_of<Record>(kernels::insert_cl, "insert.cl"),
-                        input == Input::stored ? "insert_stored" : keeping.kernel, lists_.front());
+        cellist::Source source = source_of<Record>(kernels::insert_cl, "insert.cl");
+        source.options += keeping.build_options;
+        insert_.emplace(device, source, input == Input::stored ? "insert_stored" : keeping.kernel,
+                        lists_.front());
         if (input == Input::stored) store_input(device);
         const cellist::BuildReport report = settle(lists_.front());
         if (report.stored != workload.nodes)

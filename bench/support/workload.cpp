@@ -64,7 +64,13 @@ const std::vector<Keeping>& automatic_storages() {
 const std::vector<Keeping>& allocations() {
     static const std::vector<Keeping> all{
         {"linked", "sharded", {.allocation = cellist::Allocation::sharded}},
-        {"linked", "global", {.allocation = cellist::Allocation::global}},
+        // As in the papers: one counter, and every work-item alone.
+        {"linked",
+         "global",
+         {.allocation = cellist::Allocation::global},
+         "insert",
+         1,
+         " -DCELLIST_LANES=0"},
         {"linked", "work_group", {}, "insert_all"},
         {"linked",
          "reserved_4",

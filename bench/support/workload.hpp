@@ -52,8 +52,9 @@ struct Keeping {
     std::string storage;     ///< as benchmarks are named
     std::string allocation;  ///< the same; empty for what the options take by default
     cellist::ListsOptions options;
-    std::string kernel = "insert";  ///< in insert.cl
-    cl_uint inserts = 1;            ///< of each of its work-items
+    std::string kernel = "insert";   ///< in insert.cl
+    cl_uint inserts = 1;             ///< of each of its work-items
+    const char* build_options = "";  ///< of the kernel
 
     [[nodiscard]] std::string name() const;
 };

@@ -1,6 +1,6 @@
-#include <cellist/cellist.hpp>
-
 #include <algorithm>
+
+#include <cellist/cellist.hpp>
 
 #include "check.hpp"
 

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include <cellist/cellist.hpp>
 
-#include "fragment.hpp"
+#include "method.hpp"
 #include "reference.hpp"
 
 namespace oit {
@@ -15,6 +16,7 @@ namespace oit {
 /// channel.
 struct Comparison {
     double psnr_db = 0;  ///< infinite where the pictures are equal
+    double ssim = 0;     ///< mean structural similarity of luma; 1 where the pictures are equal
     double max_abs_error = 0;
     std::uint64_t pixels = 0;
     std::uint64_t pixels_over = 0;              ///< error over 1/255
@@ -23,9 +25,16 @@ struct Comparison {
     std::uint64_t fragments = 0;                ///< of the reference
     std::uint64_t pixels_with_other_count = 0;  ///< pixels whose number of fragments differs
     double max_depth_error = 0;                 ///< relative, over pixels with equal counts
+    std::uint64_t pixels_nan = 0;               ///< of the device's image
+    bool has_depths = false;                    ///< counts and depths were compared
 };
 
+/// `depths` are those that the method stored, if it stores all, and are compared where they are of as
+/// many pixels.
 [[nodiscard]] Comparison compare(const Reference& reference, std::span<const cl_float4> image,
-                                 const cellist::HostLists<Fragment>& fragments);
+                                 const std::optional<StoredDepths>& depths);
+
+/// Pixels with a NaN in any channel.
+[[nodiscard]] std::uint64_t count_nan(std::span<const cl_float4> image);
 
 }  // namespace oit

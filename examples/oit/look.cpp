@@ -2,17 +2,13 @@
 
 namespace oit {
 
-Look studio_look(float alpha, float floor_height) {
+Look studio_look(float floor_height) {
     return {
-        .alpha = alpha,
-        .front_tint = {0.03F, 0.46F, 0.66F},
-        .back_tint = {0.78F, 0.10F, 0.42F},
         .sky = {0.42F, 0.50F, 0.60F},
         .ground = {0.05F, 0.05F, 0.07F},
         .key = {1.10F, 1.02F, 0.90F},
         .key_direction = {0.45F, 0.77F, 0.452769F},
         .rim = {0.50F, 0.62F, 0.80F},
-        .gloss = 0.5F,
         .background_top = {0.012F, 0.017F, 0.028F},
         .background_bottom = {0.060F, 0.072F, 0.095F},
         .floor_light = {0.34F, 0.36F, 0.39F},

@@ -4,17 +4,13 @@
 
 namespace oit {
 
-/// How surfaces, floor and background look. Colours are linear; directions have length 1.
+/// Light, floor and background. Colours are linear; directions have length 1.
 struct Look {
-    cl_float alpha;  ///< opacity of every transparent surface, 0 to 1
-    cl_float front_tint[3];
-    cl_float back_tint[3];
     cl_float sky[3];     ///< light from above
     cl_float ground[3];  ///< light from below
     cl_float key[3];     ///< colour of the key light
     cl_float key_direction[3];
-    cl_float rim[3];  ///< added where the surface is seen edge-on
-    cl_float gloss;   ///< strength of the highlight
+    cl_float rim[3];  ///< added where a surface is seen edge-on
     cl_float background_top[3];
     cl_float background_bottom[3];
     cl_float floor_light[3];
@@ -26,12 +22,12 @@ struct Look {
     cl_float floor_shadow;  ///< how dark the floor gets under the object, 0 to 1
     cl_float floor_shadow_radius;
 };
-CELLIST_STRUCT(Look, alpha, front_tint, back_tint, sky, ground, key, key_direction, rim, gloss,
-               background_top, background_bottom, floor_light, floor_dark, floor_height,
-               floor_square, floor_fade_begin, floor_fade_end, floor_shadow, floor_shadow_radius);
+CELLIST_STRUCT(Look, sky, ground, key, key_direction, rim, background_top, background_bottom,
+               floor_light, floor_dark, floor_height, floor_square, floor_fade_begin,
+               floor_fade_end, floor_shadow, floor_shadow_radius);
 
 /// The look of the example's pictures, for an object inside of the unit sphere that stands on a
 /// floor at `floor_height`.
-[[nodiscard]] Look studio_look(float alpha, float floor_height);
+[[nodiscard]] Look studio_look(float floor_height);
 
 }  // namespace oit

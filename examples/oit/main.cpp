@@ -1,6 +1,6 @@
-#include <algorithm>
+#include <functional>
 #include <iostream>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include <cellist/cellist.hpp>
@@ -9,127 +9,160 @@
 #include "comparison.hpp"
 #include "frame.hpp"
 #include "image.hpp"
-#include "input_error.hpp"
-#include "mesh.hpp"
+#include "keeper.hpp"
 #include "options.hpp"
+#include "picture.hpp"
 #include "progress.hpp"
 #include "reference.hpp"
 #include "renderer.hpp"
 #include "report.hpp"
+#include "stopwatch.hpp"
 
 namespace {
-
-using support::InputError;
 
 void check_output_paths(const oit::Options& options) {
     support::check_image_path(options.out);
     if (!options.json.empty()) support::check_image_path(options.json);
 }
 
-// The largest buffers of a frame: image and opaque colour with 16 bytes a pixel.
-void check_size(const oit::Options& options, const cellist::Device& device) {
-    const std::string size =
-        "--size " + std::to_string(options.width) + "x" + std::to_string(options.height);
-    const std::uint64_t bytes =
-        16 * static_cast<std::uint64_t>(options.width) * static_cast<std::uint64_t>(options.height);
-    const std::uint64_t limit = device.info().max_allocation_bytes;
-    if (bytes > limit)
-        throw InputError(size + " needs an image of " + std::to_string(bytes) +
-                         " bytes, this device allocates at most " + std::to_string(limit) +
-                         " at once");
-    if (options.width > RASTER_SIDE_MAX || options.height > RASTER_SIDE_MAX)
-        throw InputError(size + ": each side has at most " + std::to_string(RASTER_SIDE_MAX) +
-                         " pixels");
-}
-
-oit::Frame make_frame(const oit::Options& options, const support::Mesh& mesh) {
-    oit::Frame frame{
-        .mesh = mesh,
-        .view = support::frame_unit_sphere(options.orbit, options.width, options.height),
-        .look = oit::studio_look(options.alpha, oit::floor_height_under(mesh)),
-        .layers = options.layers};
-    if (options.opaque_floor) frame.floor = oit::make_floor(frame.look);
-    return frame;
-}
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    const std::size_t half = values.size() / 2;
-    return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
-
 oit::PassTimes median_times(const std::vector<oit::PassTimes>& frames) {
     const auto of = [&](double oit::PassTimes::*pass) {
         std::vector<double> values;
         for (const oit::PassTimes& frame : frames) values.push_back(frame.*pass);
-        return median(values);
+        return support::median(std::move(values));
     };
     return {of(&oit::PassTimes::transform_ms), of(&oit::PassTimes::raster_insert_ms),
-            of(&oit::PassTimes::sort_blend_ms), of(&oit::PassTimes::frame_ms)};
+            of(&oit::PassTimes::sort_blend_ms)};
 }
 
-oit::PassTimes draw_frames(oit::Renderer& renderer, std::uint32_t count) {
+// Puts the frame at its moment: the i-th of `count`.
+void set_moment(oit::Frame& frame, const oit::Options& options, std::uint32_t i,
+                std::uint32_t count) {
+    if (!options.until && options.turn_degrees == 0) return;
+    const double part = count > 1 ? static_cast<double>(i) / (count - 1) : 0;
+    oit::FrameOptions moment = options;
+    moment.time += part * (options.until.value_or(options.time) - options.time);
+    moment.orbit.azimuth_degrees += part * options.turn_degrees;
+    frame.time = moment.time;
+    frame.views = oit::make_views(moment);
+}
+
+// Calls draw() for each moment. The median of its milliseconds.
+double draw_frames(oit::Frame& frame, const oit::Options& options,
+                   const std::function<double()>& draw) {
     support::Progress progress("drawing");
     progress.update(0);
-    renderer.draw();  // builds the kernels' last variants and grows the pool
-    std::vector<oit::PassTimes> frames;
+    std::vector<double> frames;
+    for (std::uint32_t i = 0; i < options.frames; ++i) {
+        progress.update(static_cast<double>(i) / options.frames);
+        set_moment(frame, options, i, options.frames);
+        frames.push_back(draw());
+    }
+    return support::median(std::move(frames));
+}
+
+// Draws the last moment again, pass by pass.
+oit::PassTimes draw_passes(oit::Renderer& renderer, std::uint32_t count) {
+    support::Progress progress("drawing by passes");
+    std::vector<oit::PassTimes> passes;
     for (std::uint32_t i = 0; i < count; ++i) {
         progress.update(static_cast<double>(i) / count);
-        frames.push_back(renderer.draw());
+        passes.push_back(renderer.draw_by_pass());
     }
-    return median_times(frames);
+    return median_times(passes);
 }
 
 oit::Comparison compare_with_reference(const oit::Frame& frame, const oit::Renderer& renderer,
                                        const std::vector<cl_float4>& image) {
     support::Progress progress("reference");
     const oit::Reference reference =
-        oit::draw_reference(frame, [&](double part) { progress.update(part); });
-    return oit::compare(reference, image, renderer.fragments().download());
+        oit::draw_reference(frame, {.progress = [&](double part) { progress.update(part); }});
+    return oit::compare(reference, image, renderer.method().depths());
 }
 
-void run(const oit::Options& options) {
-    check_output_paths(options);
-    const cellist::Device device = options.device.empty() ? cellist::Device::choose()
-                                                          : cellist::Device::choose(options.device);
-    check_size(options, device);
+void draw_with_method(oit::Report& report, oit::Renderer& renderer, oit::Frame& frame) {
+    renderer.warm_up();
+    const bool changes = report.options.until || report.options.turn_degrees != 0;
+    report.frame_ms = draw_frames(
+        frame, report.options, [&] { return changes ? renderer.draw_changed() : renderer.draw(); });
+    report.passes = draw_passes(renderer, report.options.frames);
+}
 
-    support::Mesh mesh = support::load_mesh(options.mesh);
-    support::fit_to_unit_sphere(mesh);
-    const oit::Frame frame = make_frame(options, mesh);
-    oit::Renderer renderer(device, frame);
+void draw_within_budget(oit::Report& report, oit::Keeper& keeper, oit::Frame& frame) {
+    oit::KeptBudget& kept = report.kept;
+    report.frame_ms = draw_frames(frame, report.options, [&] {
+        const oit::Keeper::Drawn drawn = keeper.draw();
+        kept.add(drawn, frame.time, *report.options.budget);
+        return drawn.frame_ms;
+    });
+    report.passes = draw_passes(keeper.renderer(), report.options.frames);
+    report.choice = keeper.choice();
+    report.options.method = report.choice->setting.method->name;
+    report.options.quality = report.choice->setting.quality;
+}
 
-    oit::Report report;
-    report.options = options;
+void describe(oit::Report& report, const oit::Scene& scene, const cellist::Device& device) {
     report.device = device.info().name;
     report.driver = device.info().driver;
-    report.triangles = mesh.triangles.size();
-    report.drops = mesh.drops;
-    report.mesh_ends_within_line = mesh.ends_within_line;
-    report.times = draw_frames(renderer, options.frames);
-    const std::vector<cl_float4> image = renderer.image();
-    support::write_png(options.out, image, options.width, options.height);
+    if (scene.models.empty()) return;
+    report.drops = scene.models.front().mesh.drops;
+    report.mesh_ends_within_line = scene.models.front().mesh.ends_within_line;
+}
 
-    const cellist::Lengths lengths = renderer.fragments().lengths();
-    report.fragments = lengths.total;
-    report.cells_nonempty = lengths.nonempty_cells;
-    report.longest_list = lengths.longest;
-    report.pool_bytes = renderer.fragments().pool_bytes();
+void write(oit::Report& report, const oit::Frame& frame, const oit::Renderer& renderer) {
+    const oit::Options& options = report.options;
+    report.node_bytes = 4 * renderer.layout().words;
+    report.colour_max = renderer.needs().colour_max;
+    const std::vector<cl_float4> image = renderer.image();
+    report.pixels_nan = oit::count_nan(image);
+    support::write_png(options.out, oit::side_by_side(image, frame), oit::picture_width(frame),
+                       frame.height());
+    report.lengths = renderer.method().lengths();
+    report.slices = renderer.method().slices();
+    report.method_bytes = renderer.method().device_bytes();
     report.device_bytes = renderer.device_bytes();
     if (options.reference) report.comparison = compare_with_reference(frame, renderer, image);
     if (!options.json.empty()) oit::write_json(report, options.json);
     oit::print(report, std::cout);
 }
 
+// The exit code: 2 where no setting meets the budget.
+int run(const oit::Options& options) {
+    check_output_paths(options);
+    const cellist::Device device = oit::choose_device(options);
+    oit::Scene scene = oit::make_scene(options);
+    oit::Report report;
+    report.options = options;
+    report.triangles = scene.triangles();
+    if (options.opaque_floor) oit::add_floor(scene);
+    describe(report, scene, device);
+    oit::Frame frame = oit::make_frame(scene, options);
+    frame.memory_bytes = options.memory_bytes;
+    if (!options.budget) {
+        oit::Renderer renderer(device, frame, oit::method_named(options.method));
+        draw_with_method(report, renderer, frame);
+        write(report, frame, renderer);
+        return 0;
+    }
+    set_moment(frame, options, 0, options.frames);
+    oit::Keeper keeper(device, frame, *options.budget, options.check_every);
+    draw_within_budget(report, keeper, frame);
+    // The reference is that of all layers.
+    write(report, frame, keeper.renderer());
+    return report.kept.met() ? 0 : 2;
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
-    return support::run_program("cellist-oit", [&] {
+    int exit_code = 0;
+    const int failed = support::run_program("cellist-oit", [&] {
         const oit::Options options = oit::parse_options(count, arguments);
         if (options.help)
             std::cout << options.help_text;
         else
-            run(options);
+            exit_code = run(options);
         return true;
     });
+    return failed != 0 ? failed : exit_code;
 }

@@ -1,11 +1,30 @@
-// Pass: the colour of the opaque surface that opaque_depth.cl found nearest in each pixel. Opaque
-// triangles do not overlap at equal depth; where they did, the last one to write would stay.
-#define RASTER_TARGET global const uint *depth_bits, global float4 *colour, const Look kernel_look
-#define RASTER_TARGET_PASS depth_bits, colour, kernel_look
+// Pass: the colour of each sample's opaque surface, from the piece that owns it.
+#define RASTER_TARGET                                                                              \
+    global const uint *owners, global const uint *depth_bits, global float4 *colour,               \
+        const OitFrame kernel_frame, global const Material *materials, global const float *normals
+#define RASTER_TARGET_PASS owners, depth_bits, colour, kernel_frame, materials, normals
 
-static inline void raster_emit(RASTER_TARGET, const View* view, const RasterSample* sample) {
-    const size_t pixel = (size_t)sample->y * view->width + sample->x;
-    if (as_uint(sample->depth) != depth_bits[pixel]) return;
-    const Look look = kernel_look;
-    colour[pixel] = (float4)(oit_shade_floor(&look, view, sample->x, sample->y), 1.0f);
+static inline void raster_emit(RASTER_TARGET, const View* view,
+                               global const RasterInstance* instance, uint piece,
+                               const RasterFragment* sample) {
+    const size_t pixel = oit_pixel_index(view, instance->eye, sample->x, sample->y);
+    uint owned = 0;
+    for (int s = 0; s < OIT_SAMPLES; ++s)
+        if (sample->coverage >> s & 1 && owners[pixel * OIT_SAMPLES + s] == piece &&
+            depth_bits[pixel * OIT_SAMPLES + s] == as_uint(sample->depth))
+            owned |= 1u << s;
+    if (owned == 0) return;
+    const OitFrame frame = kernel_frame;
+    const Material material = materials[instance->tag];
+    float3 shaded;
+    if (material.paint == OIT_FLOOR) {
+        shaded = oit_shade_floor(&frame.look, view, sample->x, sample->y);
+    } else {
+        const float3 normal = oit_normal(instance, sample, normals);
+        shaded = oit_shade_surface(
+            &frame.look, oit_float3(sample->front ? material.front_tint : material.back_tint),
+            material.gloss, normal, sample->front, oit_ray(view, sample->x, sample->y));
+    }
+    for (int s = 0; s < OIT_SAMPLES; ++s)
+        if (owned >> s & 1) colour[pixel * OIT_SAMPLES + s] = (float4)(shaded, 1.0f);
 }

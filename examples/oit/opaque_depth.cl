@@ -1,8 +1,13 @@
-// Pass: the least depth of the opaque surfaces in each pixel, as the bits of a float. Depths are
+// Pass: the least depth of the opaque surfaces in each sample, as the bits of a float. Depths are
 // positive, so their bits are ordered as they are. Filled with the bits of infinity before.
 #define RASTER_TARGET volatile global uint* depth_bits
 #define RASTER_TARGET_PASS depth_bits
 
-static inline void raster_emit(RASTER_TARGET, const View* view, const RasterSample* sample) {
-    atomic_min(&depth_bits[(size_t)sample->y * view->width + sample->x], as_uint(sample->depth));
+static inline void raster_emit(RASTER_TARGET, const View* view,
+                               global const RasterInstance* instance, uint piece,
+                               const RasterFragment* sample) {
+    const size_t pixel = oit_pixel_index(view, instance->eye, sample->x, sample->y);
+    for (int s = 0; s < OIT_SAMPLES; ++s)
+        if (sample->coverage >> s & 1)
+            atomic_min(&depth_bits[pixel * OIT_SAMPLES + s], as_uint(sample->depth));
 }

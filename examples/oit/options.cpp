@@ -1,133 +1,145 @@
 #include "options.hpp"
 
 #include <charconv>
-#include <cmath>
 #include <string_view>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
+#include "command_line.hpp"
 #include "input_error.hpp"
+#include "number_text.hpp"
+#include "setting.hpp"
 
 namespace oit {
 namespace {
 
-using support::InputError;
+using support::refuse;
 
-// The whole text as a number, or nothing.
-template <class T>
-std::optional<T> parse(std::string_view text) {
-    T value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return {};
-    return value;
-}
-
-void read_size(const std::string& text, Options& options) {
-    const std::string expected =
-        "--size " + text + ": expected WIDTHxHEIGHT in pixels, such as 1280x720";
-    const std::size_t x = text.find('x');
-    if (x == std::string::npos) throw InputError(expected);
-    const auto width = parse<long long>(std::string_view(text).substr(0, x));
-    const auto height = parse<long long>(std::string_view(text).substr(x + 1));
-    if (!width || !height) throw InputError(expected);
-    if (*width < 1 || *height < 1)
-        throw InputError("--size " + text + ": each side has at least 1 pixel");
-    constexpr long long int_max = 0x7FFFFFFF;
-    if (*width > int_max || *height > int_max)
-        throw InputError("--size " + text + ": each side has at most " +
-                         std::to_string(RASTER_SIDE_MAX) + " pixels");
-    options.width = static_cast<int>(*width);
-    options.height = static_cast<int>(*height);
-}
-
-void read_alpha(const std::string& text, Options& options) {
-    const auto alpha = parse<double>(text);
-    if (!alpha || !(*alpha >= 0 && *alpha <= 1))
-        throw InputError("--alpha " + text + ": expected a number from 0 to 1");
-    options.alpha = static_cast<float>(*alpha);
+void read_method(const std::string& text, Options& options) {
+    options.method = text.substr(0, text.find(':'));
+    const MethodInfo& info = method_named(options.method);
+    if (options.method != text)
+        options.quality.size = read_size_of(info, text.substr(options.method.size() + 1));
 }
 
 void read_layers(const std::string& text, Options& options) {
     if (text == "all") return;
-    const auto layers = parse<long long>(text);
-    if (!layers || *layers < 1 || *layers > 0xFFFFFFFF)
-        throw InputError("--layers " + text + ": expected 'all' or a number from 1 to 4294967295");
-    options.layers = static_cast<std::uint32_t>(*layers);
+    std::uint32_t layers = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), layers);
+    if (error != std::errc() || end != text.data() + text.size() || layers == 0)
+        refuse("--layers", text, "'all' or a number from 1 to 4294967295");
+    options.quality.layers = layers;
 }
 
-void read_view(const std::string& text, Options& options) {
-    const std::size_t comma = text.find(',');
-    const auto azimuth = parse<double>(std::string_view(text).substr(0, comma));
-    const auto elevation = comma == std::string::npos
-                               ? std::nullopt
-                               : parse<double>(std::string_view(text).substr(comma + 1));
-    if (!azimuth || !elevation || !std::isfinite(*azimuth) || !std::isfinite(*elevation))
-        throw InputError("--view " + text +
-                         ": expected AZIMUTH,ELEVATION in degrees, such as 25,8");
-    if (std::abs(*elevation) > 90)
-        throw InputError("--view " + text + ": the elevation lies between -90 and 90");
-    options.orbit = {.azimuth_degrees = std::fmod(*azimuth, 360.0),
-                     .elevation_degrees = *elevation};
+void read_format(const std::string& text, Options& options) {
+    std::string names;
+    for (const NodeFormatName& entry : node_formats) {
+        names += (names.empty() ? "" : ", ") + std::string(entry.name);
+        if (entry.name != text) continue;
+        options.quality.format = entry.format;
+        return;
+    }
+    refuse("--format", text, "one of " + names);
 }
 
-void read_frames(const std::string& text, Options& options) {
-    const auto frames = parse<long long>(text);
-    if (!frames || *frames < 1 || *frames > 1'000'000)
-        throw InputError("--frames " + text + ": expected a number from 1 to 1000000");
-    options.frames = static_cast<std::uint32_t>(*frames);
+void read_reduce(const std::string& text, Options& options) {
+    if (text != "1" && text != "2" && text != "4") refuse("--reduce", text, "1, 2 or 4");
+    options.quality.reduce = text.front() - '0';
+    if (options.quality.reduce > 1 && options.quality.samples > 1)
+        throw support::InputError("--reduce draws one sample a pixel: leave out --samples");
+}
+
+// A number of bytes, or of a unit of them.
+void read_memory(const std::string& text, Options& options) {
+    if (text.empty()) return;
+    constexpr std::pair<std::string_view, int> units[] = {
+        {"KiB", 10}, {"MiB", 20}, {"GiB", 30}, {"", 0}};
+    for (const auto& [unit, shift] : units) {
+        if (!std::string_view(text).ends_with(unit)) continue;
+        const char* const number_end = text.data() + text.size() - unit.size();
+        std::uint64_t number = 0;
+        const auto [end, error] = std::from_chars(text.data(), number_end, number);
+        if (error != std::errc() || end != number_end || number == 0 ||
+            number > ~std::uint64_t{0} >> shift)
+            break;
+        options.memory_bytes = number << shift;
+        return;
+    }
+    refuse("--memory", text, "a whole number of bytes, KiB, MiB or GiB, such as 64MiB");
 }
 
 }  // namespace
 
 Options parse_options(int count, const char* const* arguments) {
     Options options;
-    std::string mesh, size = "1280x720", alpha = "0.35", layers = "all", view = "25,8";
-    std::string out = options.out.string(), json, frames = "5";
-    CLI::App app{"Draws a mesh with order-independent transparency, through per-pixel lists.",
-                 "cellist-oit"};
-    app.add_option("mesh", mesh, "mesh that Assimp reads: OBJ, PLY, STL, glTF, ...")
-        ->type_name("MESH");
-    app.add_option("--size", size, "image size in pixels")->type_name("WxH")->capture_default_str();
-    app.add_option("--alpha", alpha, "opacity of the surfaces, 0 to 1")
-        ->type_name("A")
-        ->capture_default_str();
-    app.add_option("--layers", layers, "nearest layers to blend")
-        ->type_name("K|all")
-        ->capture_default_str();
-    app.add_option("--view", view, "direction to look from, in degrees")
-        ->type_name("AZIMUTH,ELEVATION")
-        ->capture_default_str();
-    app.add_flag("--opaque-floor", options.opaque_floor, "stand the mesh on an opaque floor");
+    std::string method = options.method, format(name_of(options.quality.format)), layers = "all",
+                epsilon = shortest(options.quality.epsilon);
+    std::string reduce = std::to_string(options.quality.reduce), memory, budget,
+                check_every = std::to_string(options.check_every);
+    std::string until, turn = shortest(options.turn_degrees),
+                       frames = std::to_string(options.frames), out = options.out.string(), json;
+    CLI::App app{"Draws a mesh or a scene with order-independent transparency.", "cellist-oit"};
+    const auto add = [&](const char* name, std::string& value, const char* what, const char* type) {
+        add_option(app, name, value, what, type);
+    };
+    const FrameArguments frame(app, options);
+    add("--method", method, "how the fragments become an image", "M[:SIZE]");
+    add("--layers", layers, "nearest layers to blend", "K|all");
+    add("--epsilon", epsilon, "stop blending where no more than this part of the light passes",
+        "E");
+    add("--format", format, "colour and depth of fragments", "F");
+    add("--reduce", reduce,
+        "draw transparent surfaces with 2 or 4 times fewer pixels a side, and enlarge them", "N");
+    add("--memory", memory,
+        "what the method may take on the device, such as 64MiB; lists are drawn in slices",
+        "BYTES");
+    add("--budget", budget, "choose method and setting: PSNR at least, or largest error at most",
+        "40dB|1/255");
+    add("--check-every", check_every, "of the frames that change, check each N-th for the budget",
+        "N");
+    add("--until", until, "time of the last frame, in seconds; the first is at --time", "T");
+    add("--turn", turn, "turn the camera from the first frame to the last", "DEGREES");
     app.add_flag("--reference", options.reference,
                  "compare with a rendering in double precision on the CPU");
-    app.add_option("--out", out, "picture to write")->type_name("FILE.png")->capture_default_str();
-    app.add_option("--json", json, "write the figures to this file")->type_name("FILE");
-    app.add_option(
-           "--device", options.device,
-           "index or part of the name of the device; else CELLIST_DEVICE, a GPU, or the first")
-        ->type_name("D");
-    app.add_option("--frames", frames, "timed frames, after one that is not; times are medians")
-        ->type_name("N")
-        ->capture_default_str();
-    try {
-        app.parse(count, arguments);
-    } catch (const CLI::CallForHelp&) {
+    add("--out", out, "picture to write", "FILE.png");
+    add("--json", json, "write the figures to this file", "FILE");
+    add("--frames", frames, "timed frames, after those that warm up; times are medians", "N");
+    app.footer(help_on_tables());
+    if (const auto help = support::parse_command_line(app, count, arguments)) {
         options.help = true;
-        options.help_text = app.help();
+        options.help_text = *help;
         return options;
-    } catch (const CLI::ParseError& error) {
-        const std::string text = error.what();
-        throw InputError(text.substr(0, text.find('\n')) + " (see --help)");
     }
-    if (mesh.empty()) throw InputError("no mesh given (see --help)");
-    options.mesh = mesh;
+    frame.read(options);
     options.out = out;
     options.json = json;
-    read_size(size, options);
-    read_alpha(alpha, options);
+    if (!budget.empty()) {
+        options.budget = parse_budget(budget);
+        for (const char* chosen : {"--method", "--layers", "--epsilon", "--format"})
+            if (app.count(chosen) > 0)
+                throw support::InputError("--budget chooses what " + std::string(chosen) +
+                                          " sets: leave one of them out");
+        for (const char* unknown : {"--reduce", "--memory"})
+            if (app.count(unknown) > 0)
+                throw support::InputError("--budget compares settings without " +
+                                          std::string(unknown) + ": leave one of them out");
+    }
+    options.check_every = static_cast<std::uint32_t>(
+        support::read_number("--check-every", check_every, 1, 1'000'000));
+    if (!until.empty())
+        options.until =
+            read_between("--until", until, -1e6, 1e6, "seconds from -1000000 to 1000000");
+    options.turn_degrees = read_between("--turn", turn, -1e6, 1e6, "degrees");
+    read_method(method, options);
     read_layers(layers, options);
-    read_view(view, options);
-    read_frames(frames, options);
+    read_format(format, options);
+    read_reduce(reduce, options);
+    read_memory(memory, options);
+    options.quality.epsilon =
+        static_cast<float>(read_between("--epsilon", epsilon, 0, 1, "a number from 0 to 1"));
+    options.frames =
+        static_cast<std::uint32_t>(support::read_number("--frames", frames, 1, 1'000'000));
     return options;
 }
 

@@ -5,29 +5,29 @@
 #include <optional>
 #include <string>
 
-#include "camera.hpp"
+#include "budget.hpp"
+#include "frame_options.hpp"
 
 namespace oit {
 
 /// What the command line asks for.
-struct Options {
-    std::filesystem::path mesh;
-    int width = 1280;
-    int height = 720;
-    float alpha = 0.35F;
-    std::optional<std::uint32_t> layers = {};  ///< none means all
-    support::Orbit orbit{.azimuth_degrees = 25, .elevation_degrees = 8};
-    bool opaque_floor = false;
+struct Options : FrameOptions {
+    std::string method = "linked";
+    std::optional<std::uint64_t> memory_bytes = {};  ///< that the method may take
+    std::optional<Budget> budget = {};               ///< chooses method and setting
+    std::uint32_t check_every = 1;                   ///< of the frames that change, within a budget
+    std::optional<double> until = {};  ///< the last frame's time; the first is at `time`
+    double turn_degrees = 0;           ///< from the first frame to the last
     bool reference = false;
     std::filesystem::path out = "oit.png";
     std::filesystem::path json = {};
-    std::string device = {};
     std::uint32_t frames = 5;
     bool help = false;
     std::string help_text = {};
 };
 
-/// Reads and checks the command line. Throws InputError where an argument cannot be used.
+/// Reads and checks the command line, and the file of a blend function. Throws InputError where an
+/// argument cannot be used.
 [[nodiscard]] Options parse_options(int count, const char* const* arguments);
 
 }  // namespace oit

@@ -1,7 +1,6 @@
 #include "reference.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -9,256 +8,286 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "input_error.hpp"
+#include "node_layout.hpp"
+#include "reference_blend.hpp"
+#include "reference_raster.hpp"
+#include "reference_shading.hpp"
+
 namespace oit {
 namespace {
 
 using glm::dvec3;
 
-dvec3 to_double(const cl_float (&v)[3]) { return glm::vec3(v[0], v[1], v[2]); }
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// ---- shading: shading.clh in double precision ------------------------------------------------
+// Whether the order of two fragments at nearly the same depth matters, where both are blended. A medium of no thickness
+// does nothing, sums and products can be taken in any order, and two surfaces that cover change the
+// picture by no more than the difference of what they add.
+bool order_matters(const ReferenceFragment& a, const ReferenceFragment& b) {
+    if (a.blend == Blend::absorb || b.blend == Blend::absorb) return false;
+    constexpr double visible = 1e-7;
+    if (a.blend == Blend::over && b.blend == Blend::over) return swap_error(a, b) > visible;
+    return a.blend != b.blend || (a.blend != Blend::additive && a.blend != Blend::multiplicative);
+}
 
-class Shading {
+// The nearest opaque surface of a sample.
+struct OpaqueSample {
+    double depth = infinity;
+    dvec3 colour{0.0};
+};
+
+class Painter {
 public:
-    Shading(const Look& look, const raster::View& view) : look_(look), view_(view) {}
-
-    [[nodiscard]] dvec3 surface(dvec3 normal, bool front, int x, int y) const {
-        if (!front) normal = -normal;
-        normal /= std::sqrt(glm::dot(normal, normal) + 1e-6);
-        const dvec3 to_eye = -glm::normalize(ray(x, y));
-        const dvec3 to_key = to_double(look_.key_direction);
-        dvec3 half_way = to_eye + to_key;
-        half_way /= std::sqrt(glm::dot(half_way, half_way) + 1e-6);
-
-        const dvec3 ambient =
-            glm::mix(to_double(look_.ground), to_double(look_.sky), 0.5 + 0.5 * normal.y);
-        const dvec3 key = to_double(look_.key);
-        const double diffuse = std::max(0.0, glm::dot(normal, to_key));
-        const double highlight = std::pow(std::max(0.0, glm::dot(normal, half_way)), 32);
-        const double rim = std::pow(1 - std::max(0.0, glm::dot(normal, to_eye)), 3);
-        const dvec3 tint = to_double(front ? look_.front_tint : look_.back_tint);
-        return tint * (ambient + diffuse * key) +
-               static_cast<double>(look_.gloss) * highlight * key + rim * to_double(look_.rim);
+    Painter(const Frame& frame, const ReferenceOptions& options)
+        : frame_(frame),
+          options_(options),
+          needs_(needs_of(frame)),
+          layout_(node_layout(frame.quality, needs_)),
+          samples_(static_cast<std::size_t>(frame.quality.samples)),
+          opaque_(frame.pixels() * samples_) {
+        reference_.width = static_cast<std::size_t>(frame.width());
+        reference_.height = static_cast<std::size_t>(frame.height());
+        reference_.ambiguous.assign(frame.pixels(), false);
+        reference_.image.resize(frame.pixels());
+        for (const Instance& instance : frame.scene.instances)
+            triangles_ += frame.views.size() * model_of(instance).mesh.triangles.size();
     }
 
-    [[nodiscard]] dvec3 background(int y) const {
-        return glm::mix(to_double(look_.background_top), to_double(look_.background_bottom),
-                        (y + 0.5) / view_.height);
-    }
-
-    [[nodiscard]] dvec3 floor(int x, int y) const {
-        const dvec3 r = ray(x, y);
-        const double height = r.y < 0 ? std::min(r.y, -1e-4) : std::max(r.y, 1e-4);
-        const dvec3 eye = to_double(view_.eye);
-        const double distance = (static_cast<double>(look_.floor_height) - eye.y) / height;
-        const dvec3 hit = eye + distance * r;
-        const dvec3 step_x = to_double(view_.ray_x), step_y = to_double(view_.ray_y);
-        const dvec3 across = distance * (step_x - r * (step_x.y / height));
-        const dvec3 down = distance * (step_y - r * (step_y.y / height));
-        const double squares = 1 / static_cast<double>(look_.floor_square);
-        const auto mean = [&](int axis) {
-            const double width =
-                std::clamp(squares * (std::abs(across[axis]) + std::abs(down[axis])), 1e-2, 1e3);
-            return square_wave_mean(squares * hit[axis], width);
-        };
-        const double checker = 0.5 + 0.5 * mean(0) * mean(2);
-        const double from_axis = std::hypot(hit.x, hit.z);
-        const double shadow =
-            1 - static_cast<double>(look_.floor_shadow) *
-                    smooth(1 - from_axis / static_cast<double>(look_.floor_shadow_radius));
-        const auto begin = static_cast<double>(look_.floor_fade_begin);
-        const auto end = static_cast<double>(look_.floor_fade_end);
-        const double fade = smooth((from_axis - begin) / (end - begin));
-        const dvec3 paint =
-            glm::mix(to_double(look_.floor_dark), to_double(look_.floor_light), checker);
-        return glm::mix(paint * shadow, background(y), fade);
+    Reference draw() {
+        for_each_instance(true, [&](auto&&... arguments) { cover_opaque(arguments...); });
+        for_each_instance(false, [&](auto&&... arguments) { cover_transparent(arguments...); });
+        sort_into_pixels();
+        for (std::size_t p = 0; p < frame_.pixels(); ++p) blend(p);
+        return std::move(reference_);
     }
 
 private:
-    [[nodiscard]] dvec3 ray(int x, int y) const {
-        return to_double(view_.ray_origin) + static_cast<double>(x) * to_double(view_.ray_x) +
-               static_cast<double>(y) * to_double(view_.ray_y);
-    }
-    static double smooth(double t) {
-        t = std::clamp(t, 0.0, 1.0);
-        return t * t * (3 - 2 * t);
-    }
-    static double square_wave_integral(double x) {
-        return 1 - 2 * std::abs(x / 2 - std::floor(x / 2) - 0.5);
-    }
-    static double square_wave_mean(double middle, double width) {
-        return (square_wave_integral(middle + width / 2) -
-                square_wave_integral(middle - width / 2)) /
-               width;
+    [[nodiscard]] const Model& model_of(const Instance& instance) const {
+        return frame_.scene.models.at(instance.model);
     }
 
-    const Look& look_;
-    const raster::View& view_;
-};
-
-// ---- coverage --------------------------------------------------------------------------------
-
-struct Corner {
-    std::int64_t x, y;  // sub-pixels
-    double w;
-    std::array<double, 3> share;
-};
-
-struct Sample {
-    int x, y;
-    double depth;
-    std::array<double, 3> weight;
-    bool front;
-};
-
-// Twice the signed area of a, b, p.
-std::int64_t cross(const Corner& a, const Corner& b, std::int64_t x, std::int64_t y) {
-    return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
-}
-
-bool is_top_or_left(const Corner& a, const Corner& b) {
-    return b.y < a.y || (b.y == a.y && b.x > a.x);
-}
-
-template <class Emit>
-void scan(std::array<Corner, 3> c, const raster::View& view, const Emit& emit) {
-    const std::int64_t signed_area = cross(c[0], c[1], c[2].x, c[2].y);
-    if (signed_area == 0) return;
-    const bool front = signed_area < 0;
-    if (front) std::swap(c[1], c[2]);
-    const auto area = static_cast<double>(std::abs(signed_area));
-    const auto [x_low, x_high] = std::minmax({c[0].x, c[1].x, c[2].x});
-    const auto [y_low, y_high] = std::minmax({c[0].y, c[1].y, c[2].y});
-    const auto first = [](std::int64_t low) {
-        return static_cast<int>(std::max<std::int64_t>(0, low / RASTER_SUBPIXELS - 1));
-    };
-    const auto last = [](std::int64_t high, int side) {
-        return static_cast<int>(std::min<std::int64_t>(side - 1, high / RASTER_SUBPIXELS + 1));
-    };
-    for (int y = first(y_low); y <= last(y_high, view.height); ++y)
-        for (int x = first(x_low); x <= last(x_high, view.width); ++x) {
-            const std::int64_t px = std::int64_t{x} * RASTER_SUBPIXELS + RASTER_SUBPIXELS / 2;
-            const std::int64_t py = std::int64_t{y} * RASTER_SUBPIXELS + RASTER_SUBPIXELS / 2;
-            std::array<double, 3> part{};
-            bool covered = true;
-            for (std::size_t i = 0; i < 3; ++i) {
-                const Corner& a = c[(i + 1) % 3];
-                const Corner& b = c[(i + 2) % 3];
-                const std::int64_t edge = cross(a, b, px, py);
-                covered = covered && (edge > 0 || (edge == 0 && is_top_or_left(a, b)));
-                part[i] = static_cast<double>(edge) / area / c[i].w;
+    // Calls use(eye, instance, placed, triangle, cover) for the pixels that the opaque or the other
+    // instances cover.
+    template <class Use>
+    void for_each_instance(bool opaque, const Use& use) {
+        for (std::size_t eye = 0; eye < frame_.views.size(); ++eye)
+            for (const Instance& instance : frame_.scene.instances) {
+                if (frame_.scene.is_opaque(instance) != opaque) continue;
+                const support::Mesh& mesh = model_of(instance).mesh;
+                const raster::RasterInstance placed =
+                    raster::instance_of({.to_world = place_at(instance, frame_.time)},
+                                        frame_.views[eye], static_cast<cl_uint>(eye));
+                std::size_t last = 0;
+                for_each_cover(mesh, placed, frame_.views[eye], frame_.quality.samples,
+                               [&](std::size_t triangle, const ReferenceCover& cover) {
+                                   if (triangle / 1024 != last / 1024) report(done_ + triangle);
+                                   last = triangle;
+                                   use(eye, instance, placed, triangle, cover);
+                               });
+                done_ += mesh.triangles.size();
             }
-            if (!covered) continue;
-            const double sum = part[0] + part[1] + part[2];
-            Sample sample{x, y, 1 / sum, {}, front};
-            for (std::size_t j = 0; j < 3; ++j)
-                for (std::size_t i = 0; i < 3; ++i)
-                    sample.weight[j] += part[i] / sum * c[i].share[j];
-            emit(sample);
-        }
-}
-
-// Calls emit(triangle, sample) for every covered pixel of every triangle.
-template <class Emit>
-void draw(const support::Mesh& mesh, const raster::View& view,
-          const std::function<void(double)>& progress, const Emit& emit) {
-    for (std::size_t index = 0; index < mesh.triangles.size(); ++index) {
-        if (progress && index % 1024 == 0)
-            progress(static_cast<double>(index) / static_cast<double>(mesh.triangles.size()));
-        raster::RasterPolygon polygon{};
-        int outside = 0;
-        for (int k = 0; k < 3; ++k) {
-            const glm::vec3& p = mesh.positions[mesh.triangles[index][static_cast<std::size_t>(k)]];
-            polygon.vertex[k] = raster::raster_corner(&view, k, p.x, p.y, p.z);
-            outside |= raster::raster_outside(&view, polygon.vertex[k].x, polygon.vertex[k].y,
-                                              polygon.vertex[k].w);
-        }
-        polygon.count = 3;
-        if (outside != 0) raster::raster_clip(&view, &polygon);
-        const auto corner = [&](int i) {
-            const raster::RasterClipVertex& v = polygon.vertex[i];
-            return Corner{raster::raster_snap(v.x, v.w, view.width),
-                          raster::raster_snap(v.y, v.w, view.height),
-                          static_cast<double>(v.w),
-                          {static_cast<double>(v.share[0]), static_cast<double>(v.share[1]),
-                           static_cast<double>(v.share[2])}};
-        };
-        for (int piece = 0; piece + 2 < polygon.count; ++piece)
-            scan({corner(0), corner(piece + 1), corner(piece + 2)}, view,
-                 [&](const Sample& sample) { emit(mesh.triangles[index], sample); });
     }
-}
 
-bool too_close(double a, double b) {
-    // Infinity is the depth of no surface, which is close to nothing.
-    return std::isfinite(a) && std::isfinite(b) &&
-           std::abs(a - b) <= depth_resolution * std::max(a, b);
-}
+    // Whether nodes may have two depths in the wrong order.
+    [[nodiscard]] bool too_close(double a, double b) const {
+        // Infinity is the depth of no surface, which is close to nothing.
+        return std::isfinite(a) && std::isfinite(b) &&
+               std::abs(a - b) <= layout_.depth_resolution(needs_).at(std::max(a, b));
+    }
+    // The same for depths that are compared before they are stored.
+    [[nodiscard]] static bool float_too_close(double a, double b) {
+        return std::isfinite(a) && std::isfinite(b) &&
+               std::abs(a - b) <= depth_resolution * std::max(a, b);
+    }
+
+    void report(std::size_t triangles) const {
+        if (options_.progress)
+            options_.progress(static_cast<double>(triangles) / static_cast<double>(triangles_));
+    }
+
+    [[nodiscard]] std::size_t pixel_of(std::size_t eye, int x, int y) const {
+        return (eye * static_cast<std::size_t>(frame_.height()) + static_cast<std::size_t>(y)) *
+                   static_cast<std::size_t>(frame_.width()) +
+               static_cast<std::size_t>(x);
+    }
+
+    [[nodiscard]] dvec3 normal_of(const Instance& instance, const raster::RasterInstance& placed,
+                                  std::size_t triangle, const ReferenceCover& cover) const {
+        const support::Mesh& mesh = model_of(instance).mesh;
+        dvec3 normal(0);
+        for (std::size_t j = 0; j < 3; ++j)
+            normal += cover.weight[j] * dvec3(mesh.normals[mesh.triangles[triangle][j]]);
+        return {glm::dot(to_double(placed.normal_x), normal),
+                glm::dot(to_double(placed.normal_y), normal),
+                glm::dot(to_double(placed.normal_z), normal)};
+    }
+
+    void cover_opaque(std::size_t eye, const Instance& instance,
+                      const raster::RasterInstance& placed, std::size_t triangle,
+                      const ReferenceCover& cover) {
+        const Material& material = frame_.scene.material_of(instance);
+        const ReferenceShading shading(frame_.scene.look, frame_.views[eye]);
+        const std::size_t pixel = pixel_of(eye, cover.x, cover.y);
+        const bool is_floor = material.paint == static_cast<cl_uint>(Paint::floor);
+        const dvec3 colour =
+            is_floor
+                ? shading.floor(cover.x, cover.y)
+                : shading.surface(to_double(cover.front ? material.front_tint : material.back_tint),
+                                  static_cast<double>(material.gloss),
+                                  normal_of(instance, placed, triangle, cover), cover.front,
+                                  cover.x, cover.y);
+        for (std::size_t s = 0; s < samples_; ++s) {
+            if ((cover.coverage >> s & 1) == 0) continue;
+            OpaqueSample& sample = opaque_[pixel * samples_ + s];
+            if (float_too_close(sample.depth, cover.depth) && colour != sample.colour)
+                reference_.ambiguous[pixel] = true;
+            if (cover.depth < sample.depth) sample = {cover.depth, colour};
+        }
+    }
+
+    void cover_transparent(std::size_t eye, const Instance& instance,
+                           const raster::RasterInstance& placed, std::size_t triangle,
+                           const ReferenceCover& cover) {
+        const std::size_t pixel = pixel_of(eye, cover.x, cover.y);
+        std::uint32_t visible = 0;
+        for (std::size_t s = 0; s < samples_; ++s) {
+            if ((cover.coverage >> s & 1) == 0) continue;
+            const double behind = opaque_[pixel * samples_ + s].depth;
+            if (float_too_close(cover.depth, behind)) reference_.ambiguous[pixel] = true;
+            if (cover.depth < behind) visible |= 1U << s;
+        }
+        if (visible == 0) return;
+
+        const Material& material = frame_.scene.material_of(instance);
+        const ReferenceShading shading(frame_.scene.look, frame_.views[eye]);
+        const auto blend = static_cast<Blend>(material.blend);
+        const auto gloss = static_cast<double>(material.gloss);
+        dvec3 tint = to_double(cover.front ? material.front_tint : material.back_tint);
+        ReferenceFragment fragment{cover.depth,
+                                   tint,
+                                   alpha_of(instance, triangle, cover),
+                                   blend,
+                                   !cover.front,
+                                   visible,
+                                   cover.least_depth,
+                                   cover.greatest_depth};
+        if (blend == Blend::absorb) {
+            fragment.alpha = 1;
+            fragment.colour = to_double(material.front_tint);
+            add(pixel, fragment);
+            if (gloss == 0) return;
+            fragment.blend = Blend::additive;
+            tint = dvec3(0);
+        }
+        if (blend != Blend::multiplicative)
+            fragment.colour =
+                shading.surface(tint, gloss, normal_of(instance, placed, triangle, cover),
+                                cover.front, cover.x, cover.y);
+        add(pixel, fragment);
+    }
+
+    [[nodiscard]] double alpha_of(const Instance& instance, std::size_t triangle,
+                                  const ReferenceCover& cover) const {
+        const auto alpha = static_cast<double>(frame_.scene.material_of(instance).alpha);
+        const Model& model = model_of(instance);
+        if (model.opacities.empty()) return alpha;
+        double opacity = 0;
+        for (std::size_t j = 0; j < 3; ++j)
+            opacity += cover.weight[j] *
+                       static_cast<double>(model.opacities[model.mesh.triangles[triangle][j]]);
+        return alpha * opacity;
+    }
+
+    void add(std::size_t pixel, const ReferenceFragment& fragment) {
+        unordered_.emplace_back(pixel, fragment);
+    }
+
+    void sort_into_pixels() {
+        reference_.offsets.assign(frame_.pixels() + 1, 0);
+        for (const auto& [pixel, fragment] : unordered_) ++reference_.offsets[pixel + 1];
+        for (std::size_t p = 0; p < frame_.pixels(); ++p)
+            reference_.offsets[p + 1] += reference_.offsets[p];
+        reference_.fragments.resize(unordered_.size());
+        std::vector<std::uint64_t> next(reference_.offsets.begin(), reference_.offsets.end() - 1);
+        for (const auto& [pixel, fragment] : unordered_)
+            reference_.fragments[next[pixel]++] = fragment;
+    }
+
+    void blend(std::size_t p) {
+        const auto width = static_cast<std::size_t>(frame_.width());
+        const auto height = static_cast<std::size_t>(frame_.height());
+        const std::size_t eye = p / (width * height);
+        const auto x = static_cast<int>(p % width), y = static_cast<int>(p / width % height);
+        const ReferenceShading shading(frame_.scene.look, frame_.views[eye]);
+
+        const std::span<ReferenceFragment> list(
+            reference_.fragments.begin() + static_cast<std::ptrdiff_t>(reference_.offsets[p]),
+            reference_.fragments.begin() + static_cast<std::ptrdiff_t>(reference_.offsets[p + 1]));
+        std::sort(list.begin(), list.end(),
+                  [](const ReferenceFragment& a, const ReferenceFragment& b) {
+                      return std::tie(a.depth, a.colour.x, a.colour.y, a.colour.z) <
+                             std::tie(b.depth, b.colour.x, b.colour.y, b.colour.z);
+                  });
+        const std::size_t layers =
+            std::min<std::size_t>(list.size(), frame_.quality.layers.value_or(~0U));
+        for (std::size_t i = 0; i < layers; ++i)
+            for (std::size_t j = i + 1; j < list.size() && too_close(list[i].depth, list[j].depth);
+                 ++j)
+                if (j >= layers || order_matters(list[i], list[j])) reference_.ambiguous[p] = true;
+
+        std::vector<ReferenceLight> lights(
+            samples_, ReferenceLight(glm::length(shading.ray(x, y)), options_));
+        for (std::size_t i = 0; i < layers; ++i) {
+            const bool both = frame_.quality.depth_range && i + 1 < layers &&
+                              list[i].greatest_depth > list[i + 1].least_depth;
+            for (std::size_t s = 0; s < samples_; ++s) {
+                if (both)
+                    lights[s].add_both(list[i], list[i + 1], s);
+                else
+                    lights[s].add(list[i], s);
+            }
+            if (both) ++i;
+        }
+        dvec3 sum(0);
+        for (std::size_t s = 0; s < samples_; ++s) {
+            const OpaqueSample& behind = opaque_[p * samples_ + s];
+            sum += lights[s].end(std::isinf(behind.depth) ? shading.background(y) : behind.colour,
+                                 behind.depth);
+        }
+        reference_.image[p] = sum / static_cast<double>(samples_);
+    }
+
+    const Frame& frame_;
+    const ReferenceOptions& options_;
+    Needs needs_;
+    NodeLayout layout_;
+    std::size_t samples_;
+    std::vector<OpaqueSample> opaque_;
+    std::vector<std::pair<std::size_t, ReferenceFragment>> unordered_;
+    Reference reference_;
+    std::size_t triangles_ = 0;
+    std::size_t done_ = 0;
+};
 
 }  // namespace
 
-Reference draw_reference(const Frame& frame, const std::function<void(double)>& progress) {
-    const raster::View& view = frame.view;
-    const Shading shading(frame.look, view);
-    const auto width = static_cast<std::size_t>(view.width);
-    const std::size_t pixels = width * static_cast<std::size_t>(view.height);
-    const auto pixel_of = [&](const Sample& s) {
-        return static_cast<std::size_t>(s.y) * width + static_cast<std::size_t>(s.x);
-    };
+double swap_error(const ReferenceFragment& a, const ReferenceFragment& b) {
+    const dvec3 difference = glm::abs(a.colour - b.colour);
+    return a.alpha * b.alpha * std::max({difference.x, difference.y, difference.z});
+}
 
-    Reference reference;
-    reference.ambiguous.assign(pixels, false);
-    std::vector<double> opaque(pixels, std::numeric_limits<double>::infinity());
-    if (frame.floor)
-        draw(*frame.floor, view, {}, [&](const auto&, const Sample& s) {
-            opaque[pixel_of(s)] = std::min(opaque[pixel_of(s)], s.depth);
-        });
+std::uint64_t Reference::most_layers() const {
+    std::uint64_t most = 0;
+    for (std::size_t p = 0; p + 1 < offsets.size(); ++p)
+        most = std::max(most, offsets[p + 1] - offsets[p]);
+    return most;
+}
 
-    std::vector<std::pair<std::size_t, ReferenceFragment>> unordered;
-    reference.offsets.assign(pixels + 1, 0);
-    draw(frame.mesh, view, progress, [&](const auto& triangle, const Sample& s) {
-        const std::size_t pixel = pixel_of(s);
-        if (too_close(s.depth, opaque[pixel])) reference.ambiguous[pixel] = true;
-        if (!(s.depth < opaque[pixel])) return;
-        dvec3 normal(0);
-        for (std::size_t j = 0; j < 3; ++j)
-            normal += s.weight[j] * dvec3(frame.mesh.normals[triangle[j]]);
-        unordered.push_back({pixel, {s.depth, shading.surface(normal, s.front, s.x, s.y)}});
-        ++reference.offsets[pixel + 1];
-    });
-    for (std::size_t p = 0; p < pixels; ++p) reference.offsets[p + 1] += reference.offsets[p];
-    reference.fragments.resize(unordered.size());
-    std::vector<std::uint64_t> next(reference.offsets.begin(), reference.offsets.end() - 1);
-    for (const auto& [pixel, fragment] : unordered) reference.fragments[next[pixel]++] = fragment;
-
-    reference.image.resize(pixels);
-    const auto alpha = static_cast<double>(frame.look.alpha);
-    for (std::size_t p = 0; p < pixels; ++p) {
-        const auto begin =
-            reference.fragments.begin() + static_cast<std::ptrdiff_t>(reference.offsets[p]);
-        const auto end =
-            reference.fragments.begin() + static_cast<std::ptrdiff_t>(reference.offsets[p + 1]);
-        std::sort(begin, end, [](const ReferenceFragment& a, const ReferenceFragment& b) {
-            return std::tie(a.depth, a.colour.x, a.colour.y, a.colour.z) <
-                   std::tie(b.depth, b.colour.x, b.colour.y, b.colour.z);
-        });
-        const auto length = static_cast<std::uint64_t>(end - begin);
-        const std::uint64_t layers = std::min<std::uint64_t>(length, frame.layers.value_or(~0U));
-        dvec3 colour(0);
-        double transmittance = 1;
-        for (std::uint64_t i = 0; i < layers; ++i) {
-            const ReferenceFragment& fragment = begin[static_cast<std::ptrdiff_t>(i)];
-            colour += transmittance * alpha * fragment.colour;
-            transmittance *= 1 - alpha;
-            if (i + 1 < length &&
-                too_close(fragment.depth, begin[static_cast<std::ptrdiff_t>(i + 1)].depth))
-                reference.ambiguous[p] = true;
-        }
-        const int x = static_cast<int>(p % width), y = static_cast<int>(p / width);
-        reference.image[p] = colour + transmittance * (std::isinf(opaque[p]) ? shading.background(y)
-                                                                             : shading.floor(x, y));
-    }
-    return reference;
+Reference draw_reference(const Frame& frame, const ReferenceOptions& options) {
+    if (needs_of(frame).has(Blend::user) && !options.blend)
+        throw support::InputError("a blend function in OpenCL C has no reference to compare with");
+    return Painter(frame, options).draw();
 }
 
 }  // namespace oit

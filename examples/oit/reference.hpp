@@ -10,29 +10,47 @@
 
 namespace oit {
 
-/// Two depths are told apart by the device if they differ by more than this part of the greater
-/// one. The device's depth is off by a factor of at most 1 +- 8 * 2^-24 (see scan.clh); two of them
-/// by twice that.
-inline constexpr double depth_resolution = 16.0 / (1 << 24);
-
 struct ReferenceFragment {
     double depth;
     glm::dvec3 colour;
+    double alpha;
+    Blend blend;
+    bool leaves;  ///< of Blend::absorb: the medium ends here
+    std::uint32_t coverage;
+    double least_depth, greatest_depth;
 };
 
 /// A frame in double precision.
 struct Reference {
-    std::vector<glm::dvec3> image;             ///< linear
+    std::size_t width = 0, height = 0;         ///< of an eye's image
+    std::vector<glm::dvec3> image;             ///< linear, eye by eye
     std::vector<std::uint64_t> offsets;        ///< pixels + 1 offsets into `fragments`
     std::vector<ReferenceFragment> fragments;  ///< by pixel, nearest first
-    /// Pixels where float cannot tell the order of two fragments that count, or whether a fragment
-    /// is behind the opaque surface.
+    /// Pixels where the nodes' format cannot tell the order of two fragments that count, or float
+    /// whether a fragment is behind the opaque surface.
     std::vector<bool> ambiguous;
+
+    /// Fragments of the pixel that has the most.
+    [[nodiscard]] std::uint64_t most_layers() const;
 };
 
+struct ReferenceOptions {
+    /// Called with the finished part, from 0 to 1.
+    std::function<void(double)> progress = {};
+    /// What the user's blend function computes, in double precision.
+    std::function<void(const ReferenceFragment& fragment, double distance, glm::dvec3& colour,
+                       glm::dvec3& transmittance)>
+        blend = {};
+};
+
+/// How much a pixel changes, at most, if two surfaces of Blend::over that follow one another change places:
+/// the product of their opacities and the difference of their colours.
+[[nodiscard]] double swap_error(const ReferenceFragment& a, const ReferenceFragment& b);
+
 /// Draws a frame on the CPU: snapped geometry as on the device, everything else in double
-/// precision, exactly sorted. One thread. `progress` is called with the finished part, from 0 to 1.
-[[nodiscard]] Reference draw_reference(const Frame& frame,
-                                       const std::function<void(double)>& progress = {});
+/// precision, exactly sorted. All fragments of Quality::layers are blended, whatever epsilon and
+/// node format are. Throws InputError where a user's function blends on the device and none is given
+/// for here. One thread.
+[[nodiscard]] Reference draw_reference(const Frame& frame, const ReferenceOptions& options = {});
 
 }  // namespace oit

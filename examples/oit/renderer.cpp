@@ -1,138 +1,114 @@
 #include "renderer.hpp"
 
-#include <bit>
-#include <chrono>
-#include <limits>
-#include <string>
-#include <string_view>
-
-#include "oit_kernels.hpp"
+#include "input_error.hpp"
+#include "stopwatch.hpp"
 
 namespace oit {
 namespace {
 
-// Up to here the nearest layers are kept in registers while the list is visited once; for more,
-// sorting the lists is faster.
-constexpr std::uint32_t nearest_max = 16;
-
-constexpr cl_uint infinity_bits = std::bit_cast<cl_uint>(std::numeric_limits<cl_float>::infinity());
-
-bool picks_nearest(const Frame& frame) { return frame.layers && *frame.layers <= nearest_max; }
-
-std::string defines(const Frame& frame) { return frame.floor ? "#define OIT_OPAQUE\n" : ""; }
-
-std::string layer_defines(const Frame& frame) {
-    if (!frame.layers) return {};
-    const std::string name = picks_nearest(frame) ? "OIT_NEAREST" : "OIT_LAYERS";
-    return "#define " + name + " " + std::to_string(*frame.layers) + "\n";
+std::unique_ptr<Method> make_method(FragmentSource& source, const MethodInfo& info) {
+    const std::string refusal = info.refusal(source.frame(), source.needs());
+    if (!refusal.empty())
+        throw support::InputError("the method " + std::string(info.name) +
+                                  " cannot draw this: " + refusal);
+    return info.make(source);
 }
 
-std::string shaded(std::string_view pass) {
-    return std::string(kernels::shading_clh).append("\n").append(pass);
+void check_memory(const Method& method, const std::optional<std::uint64_t>& budget) {
+    if (budget && method.device_bytes() > *budget)
+        throw support::InputError(
+            "the method takes " + std::to_string(method.device_bytes()) +
+            " bytes, over the budget of " + std::to_string(*budget) +
+            ": raise it to that, or take a method with lists, which are drawn in slices");
 }
 
-cellist::Shape shape_of(const Frame& frame) {
-    return {static_cast<std::uint64_t>(frame.view.width),
-            static_cast<std::uint64_t>(frame.view.height)};
-}
-
-std::size_t pixels_of(const Frame& frame) {
-    return static_cast<std::size_t>(shape_of(frame).cells());
-}
-
-cellist::Source resolve_source(const cellist::Device& device, const Frame& frame) {
-    return {.text = "#include <cellist/lists.clh>\n" + defines(frame) + layer_defines(frame) +
-                    "#pragma OPENCL FP_CONTRACT OFF\n" + shaded(kernels::resolve_cl),
-            .file_name = "resolve.cl",
-            .options = raster::build_options(device)};
+std::unique_ptr<Reduction> make_reduction(const cellist::Device& device, const Frame& frame) {
+    return frame.quality.reduce > 1 ? std::make_unique<Reduction>(device, frame) : nullptr;
 }
 
 }  // namespace
 
-Renderer::Opaque::Opaque(const cellist::Device& device, raster::SetupKernels& setup,
-                         const Frame& frame)
-    : mesh(device, *frame.floor),
-      drawing(device, setup, mesh, frame.view),
-      depth_pass(device, kernels::opaque_depth_cl, "opaque_depth.cl"),
-      colour_pass(device, shaded(kernels::opaque_colour_cl), "opaque_colour.cl",
-                  cellist::type<Look>),
-      depth_bits(device, pixels_of(frame)),
-      colour(device, pixels_of(frame)) {}
-
-Renderer::Renderer(const cellist::Device& device, const Frame& frame)
+Renderer::Renderer(const cellist::Device& device, const Frame& frame, const MethodInfo& method)
     : device_(device),
-      frame_(frame),
-      sorts_(!picks_nearest(frame)),
-      setup_(device),
-      mesh_(device, frame.mesh),
-      drawing_(device, setup_, mesh_, frame.view),
-      fragments_(device, shape_of(frame)),
-      transparent_pass_(device, defines(frame) + shaded(kernels::transparent_cl), "transparent.cl",
-                        fragments_, cellist::type<Look>),
-      resolve_(device, resolve_source(device, frame), "oit_resolve", fragments_,
-               cellist::type<raster::View>, cellist::type<Look>),
-      image_(device, pixels_of(frame)) {
-    if (frame.floor) opaque_ = std::make_unique<Opaque>(device, setup_, frame);
+      reduction_(make_reduction(device, frame)),
+      source_(device, reduction_ ? reduction_->reduced() : frame),
+      method_(make_method(source_, method)) {}
+
+void Renderer::transform() {
+    if (reduction_) reduction_->transform();
+    source_.transform();
 }
 
-PassTimes Renderer::draw() {
-    using Clock = std::chrono::steady_clock;
-    const auto ms = [](Clock::duration d) {
-        return std::chrono::duration<double, std::milli>(d).count();
-    };
-    device_.finish();
-    const auto start = Clock::now();
-    drawing_.transform();
-    if (opaque_) opaque_->drawing.transform();
-    device_.finish();
-    const auto transformed = Clock::now();
-    insert_fragments();
-    device_.finish();
-    const auto inserted = Clock::now();
-    resolve();
-    device_.finish();
-    const auto end = Clock::now();
-    return {ms(transformed - start), ms(inserted - transformed), ms(end - inserted),
-            ms(end - start)};
-}
-
-void Renderer::insert_fragments() {
-    drawing_.bin();
-    if (!opaque_) {
-        fragments_.build(
-            [&] { drawing_.draw(transparent_pass_, fragments_, frame_.look, mesh_.normals); });
-        return;
-    }
-    opaque_->drawing.bin();
-    opaque_->depth_bits.fill(infinity_bits);
-    opaque_->drawing.draw(opaque_->depth_pass, opaque_->depth_bits);
-    opaque_->drawing.draw(opaque_->colour_pass, opaque_->depth_bits, opaque_->colour, frame_.look);
-    fragments_.build([&] {
-        drawing_.draw(transparent_pass_, fragments_, frame_.look, mesh_.normals,
-                      opaque_->depth_bits);
-    });
+void Renderer::store() {
+    if (reduction_) reduction_->prepare(source_);
+    source_.prepare();
+    method_->store();
+    check_memory(*method_, source_.frame().memory_bytes);
 }
 
 void Renderer::resolve() {
-    if (sorts_) fragments_.sort(&Fragment::depth);
-    const auto padded = [](int side) { return static_cast<std::size_t>((side + 7) / 8 * 8); };
-    cellist::Range range(padded(frame_.view.width), padded(frame_.view.height));
-    range.local = {8, 8, 1};
-    if (opaque_)
-        resolve_.run(range, fragments_, frame_.view, frame_.look, opaque_->depth_bits,
-                     opaque_->colour, image_);
-    else
-        resolve_.run(range, fragments_, frame_.view, frame_.look, image_);
+    method_->resolve();
+    source_.finish();
+    if (reduction_) reduction_->finish(source_);
 }
 
-std::uint64_t Renderer::device_bytes() const {
-    std::uint64_t bytes = fragments_.pool_bytes() + drawing_.device_bytes() +
-                          image_.size() * sizeof(cl_float4) + mesh_.bytes();
-    if (opaque_)
-        bytes += opaque_->mesh.bytes() + opaque_->drawing.device_bytes() +
-                 opaque_->depth_bits.size() * sizeof(cl_uint) +
-                 opaque_->colour.size() * sizeof(cl_float4);
-    return bytes;
+bool Renderer::complete() {
+    const bool drawn = source_.complete();
+    return method_->complete() && drawn;
+}
+
+void Renderer::warm_up() {
+    // The first frame finds out how much room the second makes.
+    draw();
+    draw();
+}
+
+double Renderer::draw() {
+    device_.finish();
+    const support::Stopwatch stopwatch;
+    start();
+    finish();
+    return stopwatch.ms();
+}
+
+void Renderer::start() {
+    transform();
+    store_and_resolve();
+    device_.queue().flush();
+}
+
+void Renderer::finish() {
+    while (!complete()) store_and_resolve();
+    drawn_.wait();
+}
+
+void Renderer::store_and_resolve() {
+    store();
+    resolve();
+    drawn_ = device_.enqueue_marker();
+}
+
+double Renderer::draw_changed() {
+    if (reduction_) reduction_->follow();
+    source_.follow();
+    return draw();
+}
+
+PassTimes Renderer::draw_by_pass() {
+    PassTimes times;
+    const auto measure = [&](double PassTimes::*pass, auto enqueue) {
+        device_.finish();
+        const support::Stopwatch stopwatch;
+        enqueue();
+        device_.finish();
+        times.*pass = stopwatch.ms();
+    };
+    measure(&PassTimes::transform_ms, [&] { transform(); });
+    do {
+        measure(&PassTimes::raster_insert_ms, [&] { store(); });
+        measure(&PassTimes::sort_blend_ms, [&] { resolve(); });
+    } while (!complete());
+    return times;
 }
 
 }  // namespace oit

@@ -4,28 +4,15 @@
 #include <fstream>
 #include <iomanip>
 #include <ostream>
-#include <sstream>
 
 #include <nlohmann/json.hpp>
 
 #include "input_error.hpp"
+#include "number_text.hpp"
+#include "setting.hpp"
 
 namespace oit {
 namespace {
-
-std::string grouped(std::uint64_t value) {
-    std::string digits = std::to_string(value);
-    for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, ",");
-    return digits;
-}
-
-std::string fixed(double value, int decimals) {
-    std::ostringstream out;
-    out << std::fixed << std::setprecision(decimals) << value;
-    return out.str();
-}
-
-std::string megabytes(std::uint64_t bytes) { return fixed(static_cast<double>(bytes) / 1e6, 1); }
 
 std::string dropped_text(const support::MeshDrops& drops) {
     std::string text;
@@ -39,15 +26,25 @@ std::string dropped_text(const support::MeshDrops& drops) {
     return text.empty() ? "" : " (dropped: " + text + ")";
 }
 
+// What a blend that ends early leaves out, at most: each channel, linear. What is added on top of
+// what passes is not bounded by it.
+std::string early_end_text(const Report& report) {
+    const double bound = static_cast<double>(report.options.quality.epsilon) *
+                         static_cast<double>(report.colour_max);
+    return "linear colours off by " + fixed(255 * bound, 4) + " / 255 at most";
+}
+
 void print_comparison(const Comparison& c, std::ostream& out) {
     const auto line = [&out](const std::string& name) -> std::ostream& {
         return out << "  " << std::left << std::setw(18) << name << std::right;
     };
     line("PSNR") << fixed(c.psnr_db, 1) << " dB against double precision\n";
+    line("SSIM") << fixed(c.ssim, 6) << '\n';
     line("largest error") << fixed(255 * c.max_abs_error, 4) << " / 255\n";
     line("over 1/255") << grouped(c.pixels_over) << " of " << grouped(c.pixels) << " pixels, "
                        << grouped(c.pixels_explained)
                        << " explained by depths closer than 2^-20 of each other\n";
+    if (!c.has_depths) return;
     line("fragment counts") << (c.pixels_with_other_count == 0
                                     ? std::string("equal in every pixel")
                                     : "differ in " + grouped(c.pixels_with_other_count) +
@@ -65,22 +62,37 @@ void print(const Report& report, std::ostream& out) {
         return out << "  " << std::left << std::setw(18) << name << std::right;
     };
     const Options& options = report.options;
-    out << "cellist-oit " << options.mesh.filename().string() << ", " << options.width << 'x'
-        << options.height << ", alpha " << options.alpha << ", "
-        << (options.layers ? std::to_string(*options.layers) + " nearest layers" : "all layers")
+    out << "cellist-oit " << std::filesystem::path(options.scene).filename().string() << ", "
+        << options.width << 'x' << options.height << ", alpha " << options.alpha << ", "
+        << (options.quality.layers ? std::to_string(*options.quality.layers) + " nearest layers"
+                                   : "all layers")
         << (options.opaque_floor ? ", opaque floor" : "") << '\n';
     line("device") << report.device << " (driver " << report.driver << ")\n";
+    line("method") << method_text({&method_named(options.method), options.quality}) << ", nodes of "
+                   << report.node_bytes << " bytes, " << options.quality.samples
+                   << (options.quality.samples == 1 ? " sample" : " samples") << " a pixel\n";
+    if (options.quality.reduce > 1)
+        line("reduced") << "transparent surfaces drawn with " << options.quality.reduce
+                        << " times fewer pixels a side\n";
     line("triangles") << grouped(report.triangles) << dropped_text(report.drops) << '\n';
-    line("fragments") << grouped(report.fragments) << '\n';
-    line("non-empty pixels") << grouped(report.cells_nonempty) << '\n';
-    line("longest list") << grouped(report.longest_list) << '\n';
-    line("memory") << megabytes(report.pool_bytes) << " MB of lists, "
+    if (report.lengths) {
+        line("fragments") << grouped(report.lengths->total) << '\n';
+        line("non-empty pixels") << grouped(report.lengths->nonempty_cells) << '\n';
+        line("longest list") << grouped(report.lengths->longest) << '\n';
+    }
+    line("memory") << megabytes(report.method_bytes) << " MB of lists, "
                    << megabytes(report.device_bytes) << " MB in all\n";
-    line("transform") << fixed(report.times.transform_ms, 2) << " ms\n";
-    line("raster + insert") << fixed(report.times.raster_insert_ms, 2) << " ms\n";
-    line("sort + blend") << fixed(report.times.sort_blend_ms, 2) << " ms\n";
-    line("frame") << fixed(report.times.frame_ms, 2) << " ms (median of " << options.frames
-                  << ")\n";
+    if (options.memory_bytes)
+        line("slices") << report.slices << ", " << grouped(report.method_bytes) << " of "
+                       << grouped(*options.memory_bytes) << " bytes used\n";
+    line("transform") << fixed(report.passes.transform_ms, 2) << " ms\n";
+    line("raster + insert") << fixed(report.passes.raster_insert_ms, 2) << " ms\n";
+    line("sort + blend") << fixed(report.passes.sort_blend_ms, 2) << " ms\n";
+    line("frame") << fixed(report.frame_ms, 2) << " ms (median of " << options.frames << ")\n";
+    if (report.choice) print(*report.choice, *options.budget, report.kept, out);
+    if (options.quality.epsilon > 0) line("early end") << early_end_text(report) << '\n';
+    if (report.pixels_nan > 0)
+        line("NaN") << grouped(report.pixels_nan) << " pixels, drawn black\n";
     if (report.comparison) print_comparison(*report.comparison, out);
     if (report.mesh_ends_within_line)
         line("note") << "the mesh file ends within a line: it may have been cut off\n";
@@ -92,12 +104,13 @@ void write_json(const Report& report, const std::filesystem::path& path) {
     nlohmann::ordered_json json;
     json["device"] = report.device;
     json["driver"] = report.driver;
-    json["mesh"] = options.mesh.filename().string();
+    json["scene"] = std::filesystem::path(options.scene).filename().string();
+    json["method"] = method_text({&method_named(options.method), options.quality});
     json["width"] = options.width;
     json["height"] = options.height;
     json["alpha"] = options.alpha;
-    if (options.layers)
-        json["layers"] = *options.layers;
+    if (options.quality.layers)
+        json["layers"] = *options.quality.layers;
     else
         json["layers"] = "all";
     json["view"] = {options.orbit.azimuth_degrees, options.orbit.elevation_degrees};
@@ -108,21 +121,34 @@ void write_json(const Report& report, const std::filesystem::path& path) {
                        {"out_of_range_triangles", report.drops.out_of_range_triangles},
                        {"degenerate_triangles", report.drops.degenerate_triangles},
                        {"points_and_lines", report.drops.points_and_lines}};
-    json["fragments"] = report.fragments;
-    json["cells_nonempty"] = report.cells_nonempty;
-    json["longest_list"] = report.longest_list;
-    json["pool_bytes"] = report.pool_bytes;
+    json["fragments"] = nullptr;
+    if (report.lengths) {
+        json["fragments"] = report.lengths->total;
+        json["cells_nonempty"] = report.lengths->nonempty_cells;
+        json["longest_list"] = report.lengths->longest;
+    }
+    json["samples"] = options.quality.samples;
+    json["node_bytes"] = report.node_bytes;
+    json["pool_bytes"] = report.method_bytes;
+    json["reduce"] = options.quality.reduce;
+    json["memory_bytes"] = nullptr;
+    if (options.memory_bytes) json["memory_bytes"] = *options.memory_bytes;
+    json["slices"] = report.slices;
+    json["pixels_nan"] = report.pixels_nan;
     json["device_bytes"] = report.device_bytes;
     json["frames"] = options.frames;
-    json["time_ms"] = {{"transform", report.times.transform_ms},
-                       {"raster_insert", report.times.raster_insert_ms},
-                       {"sort_blend", report.times.sort_blend_ms},
-                       {"frame", report.times.frame_ms}};
+    if (report.choice) json["budget"] = json_of(*report.choice, *options.budget, report.kept);
+    json["time_ms"] = {{"transform", report.passes.transform_ms},
+                       {"raster_insert", report.passes.raster_insert_ms},
+                       {"sort_blend", report.passes.sort_blend_ms},
+                       {"frame", report.frame_ms}};
     json["psnr_db"] = nullptr;
+    json["ssim"] = nullptr;
     json["max_abs_error"] = nullptr;
     if (report.comparison) {
         const Comparison& c = *report.comparison;
         if (std::isfinite(c.psnr_db)) json["psnr_db"] = c.psnr_db;
+        json["ssim"] = c.ssim;
         json["max_abs_error"] = c.max_abs_error;
         json["reference"] = {{"pixels_over_1_255", c.pixels_over},
                              {"pixels_explained", c.pixels_explained},

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "choice_report.hpp"
 #include "comparison.hpp"
 #include "mesh.hpp"
 #include "options.hpp"
@@ -21,13 +22,18 @@ struct Report {
     std::uint64_t triangles = 0;
     support::MeshDrops drops;
     bool mesh_ends_within_line = false;
-    std::uint64_t fragments = 0;
-    std::uint64_t cells_nonempty = 0;
-    std::uint64_t longest_list = 0;
-    std::uint64_t pool_bytes = 0;
+    std::optional<cellist::Lengths> lengths;  ///< of methods that keep all fragments
+    std::uint64_t node_bytes = 0;             ///< of a fragment, without links
+    std::uint64_t method_bytes = 0;           ///< what the method keeps on the device
     std::uint64_t device_bytes = 0;
-    PassTimes times;
+    std::uint32_t slices = 1;  ///< that the frame was built in
+    std::uint64_t pixels_nan = 0;
+    float colour_max = 1;  ///< brightest channel of a fragment, at most
+    double frame_ms = 0;   ///< from clearing to the image on the device, median
+    PassTimes passes;      ///< medians
     std::optional<Comparison> comparison;
+    std::optional<Choice> choice;  ///< for a budget
+    KeptBudget kept;
 };
 
 /// One screen for people.

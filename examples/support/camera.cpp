@@ -19,9 +19,9 @@ void set_row(cl_float (&row)[4], const glm::dvec3& axis, const glm::dvec3& eye, 
     row[3] = static_cast<cl_float>(-scale * glm::dot(axis, eye));
 }
 
-}  // namespace
-
-raster::View frame_unit_sphere(const Orbit& orbit, int width, int height) {
+// The view from an eye that is moved to the right, with the image moved so that the origin stays in
+// its middle.
+raster::View frame_from(const Orbit& orbit, int width, int height, double to_the_right) {
     constexpr double radians = std::numbers::pi / 180;
     constexpr double half_field = 15 * radians;
     constexpr double filled = 0.97;  // of the shorter side, by the sphere
@@ -35,24 +35,38 @@ raster::View frame_unit_sphere(const Orbit& orbit, int width, int height) {
     const glm::dvec3 right(cos_azimuth, 0, -sin_azimuth);
     const glm::dvec3 down = glm::cross(right, towards_eye);
     const double distance = 1 / std::sin(std::atan(filled * std::tan(half_field)));
-    const glm::dvec3 eye = distance * towards_eye;
+    const glm::dvec3 eye = distance * towards_eye + to_the_right * right;
+    const glm::dvec3 sheared = right - (to_the_right / distance) * towards_eye;
 
     const double focal_pixels = 0.5 * std::min(width, height) / std::tan(half_field);
     const double focal = focal_pixels * RASTER_SUBPIXELS;
     raster::View view{};
-    set_row(view.row_x, right, eye, focal);
+    set_row(view.row_x, sheared, eye, focal);
     set_row(view.row_y, down, eye, focal);
     set_row(view.row_w, -towards_eye, eye, 1);
     const glm::dvec3 ray_x = right / focal_pixels;
     const glm::dvec3 ray_y = down / focal_pixels;
     set(view.ray_x, ray_x);
     set(view.ray_y, ray_y);
-    set(view.ray_origin, -towards_eye - (0.5 * (width - 1)) * ray_x - (0.5 * (height - 1)) * ray_y);
+    set(view.ray_origin, -towards_eye - (to_the_right / distance) * right -
+                             (0.5 * (width - 1)) * ray_x - (0.5 * (height - 1)) * ray_y);
     set(view.eye, eye);
     view.near_depth = static_cast<cl_float>(0.01 * distance);
     view.width = width;
     view.height = height;
     return view;
+}
+
+}  // namespace
+
+raster::View frame_unit_sphere(const Orbit& orbit, int width, int height) {
+    return frame_from(orbit, width, height, 0);
+}
+
+std::vector<raster::View> frame_unit_sphere(const Orbit& orbit, int width, int height,
+                                            double eye_separation) {
+    return {frame_from(orbit, width, height, -0.5 * eye_separation),
+            frame_from(orbit, width, height, 0.5 * eye_separation)};
 }
 
 }  // namespace support

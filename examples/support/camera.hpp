@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "raster/view.hpp"
 
 namespace support {
@@ -13,5 +15,10 @@ struct Orbit {
 /// The perspective view of an orbit camera that frames a sphere of radius 1 in an image of
 /// width x height pixels. The field of view is 30 degrees along the shorter side.
 [[nodiscard]] raster::View frame_unit_sphere(const Orbit& orbit, int width, int height);
+
+/// The same for two eyes, left and right, at this distance from each other; both see the origin in
+/// the middle of the image.
+[[nodiscard]] std::vector<raster::View> frame_unit_sphere(const Orbit& orbit, int width, int height,
+                                                          double eye_separation);
 
 }  // namespace support

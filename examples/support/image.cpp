@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <string>
-#include <vector>
+#include <new>
 
 #include <stb_image_write.h>
 
@@ -30,8 +28,7 @@ void check_image_path(const std::filesystem::path& path) {
         throw InputError("cannot write '" + path.string() + "': it is a folder");
 }
 
-void write_png(const std::filesystem::path& path, std::span<const cl_float4> pixels, int width,
-               int height) {
+std::vector<std::uint8_t> srgb_bytes(std::span<const cl_float4> pixels) {
     std::vector<std::uint8_t> bytes;
     bytes.reserve(pixels.size() * 3);
     for (const cl_float4& pixel : pixels)
@@ -39,6 +36,23 @@ void write_png(const std::filesystem::path& path, std::span<const cl_float4> pix
             const double encoded = srgb_from_linear(static_cast<double>(pixel.s[channel]));
             bytes.push_back(static_cast<std::uint8_t>(std::lround(255 * encoded)));
         }
+    return bytes;
+}
+
+std::string png(std::span<const std::uint8_t> bytes, int width, int height) {
+    std::string file;
+    const auto append = [](void* to, void* data, int count) {
+        static_cast<std::string*>(to)->append(static_cast<const char*>(data),
+                                              static_cast<std::size_t>(count));
+    };
+    if (stbi_write_png_to_func(append, &file, width, height, 3, bytes.data(), 3 * width) == 0)
+        throw std::bad_alloc();
+    return file;
+}
+
+void write_png(const std::filesystem::path& path, std::span<const cl_float4> pixels, int width,
+               int height) {
+    const std::vector<std::uint8_t> bytes = srgb_bytes(pixels);
     if (stbi_write_png(path.string().c_str(), width, height, 3, bytes.data(), 3 * width) == 0)
         throw InputError("cannot write '" + path.string() + "'");
 }

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
+#include <vector>
 
 #include <cellist/opencl.hpp>
 
@@ -13,6 +16,12 @@ namespace support {
 /// Throws InputError unless an image can be written there: the folder exists and the path is not a
 /// folder itself.
 void check_image_path(const std::filesystem::path& path);
+
+/// Red, green and blue of linear pixels in 8-bit sRGB.
+[[nodiscard]] std::vector<std::uint8_t> srgb_bytes(std::span<const cl_float4> pixels);
+
+/// The bytes of a PNG file with an image of 3 bytes a pixel, row by row from the top.
+[[nodiscard]] std::string png(std::span<const std::uint8_t> bytes, int width, int height);
 
 /// Writes linear RGB pixels (the fourth component is not used), row by row from the top, as an
 /// 8-bit sRGB PNG. Throws InputError where the file cannot be written.

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <concepts>
+#include <cstddef>
 #include <limits>
+#include <vector>
 
 #include <cellist/device.hpp>
 
@@ -28,6 +30,13 @@ double measure_ms(const cellist::Device& device, std::invocable auto&& work) {
     work();
     device.finish();
     return stopwatch.ms();
+}
+
+/// The middle of some times, at least one.
+[[nodiscard]] inline double median(std::vector<double> times_ms) {
+    std::sort(times_ms.begin(), times_ms.end());
+    const std::size_t half = times_ms.size() / 2;
+    return times_ms.size() % 2 == 1 ? times_ms[half] : 0.5 * (times_ms[half - 1] + times_ms[half]);
 }
 
 /// The least of some times. On a machine that does other work, the one that was disturbed least.

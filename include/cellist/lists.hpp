@@ -65,7 +65,12 @@ public:
     /// the lists are empty. Blocks until the report is there.
     template <class... Args>
     BuildReport build(Kernel& kernel, const Range& range, const Args&... args) {
-        return build([&] { kernel.run(range, *this, args...); });
+        return build([&] {
+            detail::Arguments arguments;
+            arguments.add(*this);
+            (arguments.add(args), ...);
+            kernel.enqueue(range, arguments);
+        });
     }
 
     /// The same for several inserting kernels: `insert` enqueues all of them with Kernel::run, and is
@@ -120,7 +125,8 @@ public:
     /// well. Where the budget or the device has no memory for it, lists are sorted as by sort_async().
     ///
     /// Blocks until it is known how long the lists are. The first calls for a member compile kernels.
-    /// Throws Error if links lead in circles; whatever fails, the lists hold what they held.
+    /// Throws Error where links lead in circles and there is a second pool. Whatever fails, sound lists
+    /// hold what they held.
     template <class M>
     cl::Event sort(M T::*member, Order order = Order::ascending) {
         return core_->sort(key_of(member, order), all_nodes);
@@ -148,7 +154,8 @@ public:
     }
 
     /// Sorts without blocking, and without a second pool: each list in its place, by one work-item, which
-    /// takes longer for most lists. Lists whose links lead in circles end as lists without circles.
+    /// takes longer for most lists. For sound lists only: where links lead in circles, it ends, and the
+    /// lists may be anything.
     template <class M>
     cl::Event sort_async(M T::*member, Order order = Order::ascending) {
         return core_->sort_async(key_of(member, order));
@@ -259,7 +266,7 @@ template <std::size_t count>
 std::array<BuildReport, count> reports(Build& build) {
     std::array<BuildReport, count> result;
     const std::vector<BuildReport>& all = ListsCore::finish(build);
-    std::copy(all.begin(), all.end(), result.begin());
+    for (std::size_t i = 0; i < count; ++i) result[i] = all[i];
     return result;
 }
 

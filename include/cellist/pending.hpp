@@ -12,6 +12,8 @@ namespace cellist {
 template <class T>
 class Pending {
 public:
+    /// Nothing to wait for; get() throws.
+    Pending() = default;
     /// @private
     Pending(cl::Event event, std::function<T()> result)
         : event_(std::move(event)), result_(std::move(result)) {}
@@ -26,6 +28,7 @@ public:
 
     /// Whether get() would find the device done. Does not block.
     [[nodiscard]] bool ready() const {
+        if (event_() == nullptr) return true;
         cl_int status = CL_QUEUED;
         const cl_int code = clGetEventInfo(event_(), CL_EVENT_COMMAND_EXECUTION_STATUS,
                                            sizeof status, &status, nullptr);
@@ -33,8 +36,12 @@ public:
         return status <= CL_COMPLETE;
     }
 
-    /// The result, once. Throws what the blocking call throws. Blocks.
-    T get() { return std::exchange(result_, nullptr)(); }
+    /// The result, once. Throws what the blocking call throws, and Error the second time. Blocks.
+    T get() {
+        const std::function<T()> result = std::exchange(result_, nullptr);
+        if (!result) throw Error("there is no result: it was taken already, or none was asked for");
+        return result();
+    }
 
 private:
     cl::Event event_;

@@ -43,8 +43,7 @@ struct Validation {
     std::uint64_t broken_links = 0;    ///< links, offsets or counts that lead outside of the lists
     std::uint64_t repeated_nodes = 0;  ///< links to a node that is in a list already: cycles, too
     std::uint64_t lost_nodes = 0;      ///< nodes that no list leads to, or that were never written
-    std::uint64_t late_inserts =
-        0;  ///< inserts outside of a build since the lists were cleared: refused
+    std::uint64_t late_inserts = 0;    ///< inserts since the last build, which were refused
     /// Lowest cell that shows one of these. None where all is well, or where only sums differ.
     std::optional<std::uint64_t> first_bad_cell;
 

@@ -32,10 +32,23 @@
                   "CELLIST_STRUCT: " #type " must be trivially copyable and of standard layout");  \
     static_assert(::cellist::detail::is_plain_name(#type),                                         \
                   "CELLIST_STRUCT stands in the struct's own namespace, with its plain name");     \
+    static_assert(!CELLIST_STRUCT_HAS_MORE(type, __VA_ARGS__),                                     \
+                  "CELLIST_STRUCT: " #type " has more members than are named");                    \
     static_assert(cellist_describe(static_cast<const type*>(nullptr)).matches_device_layout(),     \
                   "CELLIST_STRUCT: the layout of " #type                                           \
                   " differs from OpenCL C's: name every member, in order of declaration, and use " \
                   "types that are aligned as on the device")
+
+// Whether an aggregate takes one initialiser more than members are named.
+#define CELLIST_STRUCT_HAS_MORE(type, ...)                                                         \
+    []<class T>(const T*) {                                                                        \
+        if constexpr (std::is_aggregate_v<T>) return requires {                                    \
+                T{CELLIST_FOR_EACH(CELLIST_STRUCT_BRACES, type, __VA_ARGS__){}};                   \
+            };                                                                                     \
+        else                                                                                       \
+            return false;                                                                          \
+    }(static_cast<const type*>(nullptr))
+#define CELLIST_STRUCT_BRACES(type, member) {},
 
 #define CELLIST_STRUCT_MEMBER(type, member)                                                        \
     , ::cellist::detail::member_of<type, decltype(type::member)>(#member, &type::member,           \

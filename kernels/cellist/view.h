@@ -70,7 +70,7 @@
 typedef struct cellist_view {
     CELLIST_UINT extent[4];       // cells along x, y, z, w; missing dimensions are 1
     CELLIST_UINT cells;           // product of the extents
-    CELLIST_UINT capacity_nodes;  // nodes in the pool
+    CELLIST_UINT capacity_nodes;  // nodes in the pool, those for hands of threads included
     CELLIST_UINT shard_bits;      // the counters have 2^shard_bits shards
     CELLIST_UINT mode;            // one of the modes above
     CELLIST_UINT slots;           // nodes of each cell in mode FIXED
@@ -79,6 +79,7 @@ typedef struct cellist_view {
     CELLIST_UINT reserves;        // not 0: a reservation takes its nodes at once
     CELLIST_UINT rank_member;     // of the record, that it is ranked by
     CELLIST_UINT rank_words;      // words of the key that have thresholds
+    CELLIST_UINT hands;           // of threads: 0, or a power of two from 8 on
 } cellist_view;
 
 // The counters of one shard, alone in its cache line. The struct behind the last shard holds the
@@ -95,13 +96,26 @@ typedef struct cellist_shard {
     CELLIST_UINT open_reservations;  // that hold nodes which no link has taken
     CELLIST_UINT missing_low;        // nodes that reservations lack, 64 bits in two words
     CELLIST_UINT missing_high;
-    CELLIST_UINT padding[5];
+    CELLIST_UINT passed;  // when this shard was full, so many were seen full from it on
+    CELLIST_UINT padding[4];
 } cellist_shard;
+
+// Nodes that a thread has for itself, alone in its cache line: those at the addresses node ... last - 1,
+// which lie in one block, and then the next ... end - 1 of a shard.
+typedef struct cellist_hand {
+    CELLIST_UINT node;
+    CELLIST_UINT last;
+    CELLIST_UINT shard;
+    CELLIST_UINT next;
+    CELLIST_UINT end;
+    CELLIST_UINT padding[11];
+} cellist_hand;
 
 // What a choice among the records of each cell finds, from 0.
 typedef struct cellist_choice {
-    CELLIST_UINT undecided;  // cells with more records that equal the thresholds than slots for them
-    CELLIST_UINT words;      // of a record's key
+    CELLIST_UINT
+        undecided;       // cells with more records that equal the thresholds than slots for them
+    CELLIST_UINT words;  // of a record's key
 } cellist_choice;
 
 // What a validation finds, from 0; each of its kernels says which of these it counts.
@@ -116,14 +130,16 @@ typedef struct cellist_findings {
 // Classes of lists by their length: up to 16, 32, 64, 128, 256 nodes, and more.
 #define CELLIST_SORT_CLASS_MIN 16u
 #define CELLIST_SORT_CLASSES 6u
+// A sort looks at every other class at most.
+#define CELLIST_SORT_STAGES ((CELLIST_SORT_CLASSES + 1u) / 2u)
 
 // What the kernels that sort find, from 0.
 typedef struct cellist_sort_state {
-    CELLIST_UINT nodes;      // that have their places, of linked lists
-    CELLIST_UINT chunks;     // of all long lists
-    CELLIST_UINT longest;    // nodes of a long list
-    CELLIST_UINT broken;     // lists with links that no build makes
-    CELLIST_UINT longer[4];  // lists that were left by each class
+    CELLIST_UINT nodes;                           // that have their places, of linked lists
+    CELLIST_UINT chunks;                          // of all long lists
+    CELLIST_UINT longest;                         // nodes of a long list
+    CELLIST_UINT broken;                          // lists with links that no build makes
+    CELLIST_UINT longer[CELLIST_SORT_STAGES];     // lists that were left by each class
     CELLIST_UINT in_class[CELLIST_SORT_CLASSES];  // lists that were sorted in work-groups
 } cellist_sort_state;
 

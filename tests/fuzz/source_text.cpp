@@ -106,7 +106,7 @@ void build(Input& input) {
     // A line is continued behind a backslash, and behind the trigraph for one.
     for (char& c : text)
         if (c == '\n' || c == '\r' || c == '\\' || c == '?' || c == '\0') c = '_';
-    Source source{.text = "kernel void nothing(void) {}\n"};
+    Source source{.text = "kernel void nothing(uint parameter) {}\n"};
     std::string name = "nothing";
     bool builds = true;
     if (where == 0) {

@@ -183,8 +183,8 @@ void compare_with_device(const Device& device, const std::vector<Struct>& struct
 /// What the library says about a description that is wrong.
 std::string refusal_of(const Device& device, const Definitions& definitions) {
     try {
-        Kernel(device.state(), Source{.text = "kernel void nothing_(void) {}"}, "nothing_",
-               definitions);
+        Kernel(device.state(), Source{.text = "kernel void nothing_(uint parameter) {}"},
+               "nothing_", definitions);
     } catch (const OpenClError&) {
         CELLIST_FUZZ_REQUIRE(false && "the layout checks find it first");
     } catch (const Error& error) {

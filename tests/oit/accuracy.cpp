@@ -23,16 +23,15 @@ void require_accurate(const support::Mesh& mesh, const Case& c) {
     INFO("view " << c.orbit.azimuth_degrees << "," << c.orbit.elevation_degrees << ", " << c.width
                  << "x" << c.height << ", alpha " << c.alpha << ", layers "
                  << (c.layers ? std::to_string(*c.layers) : "all") << ", floor " << c.floor);
-    oit::Frame frame{.mesh = mesh,
-                     .view = support::frame_unit_sphere(c.orbit, c.width, c.height),
-                     .look = oit::studio_look(c.alpha, oit::floor_height_under(mesh)),
-                     .layers = c.layers};
-    if (c.floor) frame.floor = oit::make_floor(frame.look);
+    oit::Scene scene = oit::scene_of(mesh, c.alpha);
+    if (c.floor) oit::add_floor(scene);
+    const oit::Frame frame{.scene = scene,
+                           .views = {support::frame_unit_sphere(c.orbit, c.width, c.height)},
+                           .quality = {.layers = c.layers}};
     oit::Renderer renderer(device(), frame);
     renderer.draw();
     const oit::Comparison comparison =
-        oit::compare(oit::draw_reference(frame), renderer.image(), renderer.fragments().download());
-    REQUIRE(renderer.fragments().validate().ok());
+        oit::compare(oit::draw_reference(frame), renderer.image(), renderer.method().depths());
     CHECK(comparison.fragments > 0);
     CHECK(comparison.pixels_with_other_count == 0);
     CHECK(comparison.max_depth_error <= oit::depth_resolution / 2);

@@ -1,57 +1,15 @@
 // The program refuses what it cannot do, in one line that names the value.
-#include <cstdio>
-#include <cstdlib>
 #include <tuple>
 
-#include <sys/wait.h>
-
-#include "oit/support/files.hpp"
-#include "oit/support/procedural.hpp"
-#include "support/catch.hpp"
-#include "support/errors.hpp"
+#include "oit/support/program.hpp"
 
 namespace cellist::test {
 namespace {
 
-struct Outcome {
-    int exit_code;
-    std::string out;
-    std::string error;
-};
-
-class Program {
-public:
-    Program() : mesh_(folder_.write("knot.obj", obj_text(torus_knot(2, 3, 80, 8)))) {}
-
-    /// `environment` stands before the program, `arguments` after it.
-    Outcome run(const std::string& arguments, const std::string& environment = {}) const {
-        const std::string out = (folder_ / "stdout").string(),
-                          error = (folder_ / "stderr").string();
-        const std::string command = "cd '" + (folder_ / ".").string() + "' && " + environment +
-                                    " '" CELLIST_OIT_PROGRAM "' " + arguments + " >'" + out +
-                                    "' 2>'" + error + "'";
-        const int status = std::system(command.c_str());
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(error)};
-    }
-
-    [[nodiscard]] const Folder& folder() const { return folder_; }
-
-private:
-    Folder folder_;
-    std::filesystem::path mesh_;
-};
-
-void require_refused(const Outcome& outcome, const std::string& named) {
-    INFO(outcome.error);
-    CHECK(outcome.exit_code == 1);
-    CHECK(outcome.error.starts_with("cellist-oit: "));
-    CHECK(count_of(outcome.error, "\n") == 1);
-    CHECK(contains(outcome.error, named));
-    CHECK(outcome.out.empty());
-}
+Program oit_program() { return Program(CELLIST_OIT_PROGRAM); }
 
 TEST_CASE("bad arguments are refused") {
-    const Program program;
+    const Program program = oit_program();
     for (const auto& [arguments, named] : {
              std::pair<std::string, std::string>{"--size 0x0", "0x0"},
              {"--size 100000x100000", "100000x100000"},
@@ -77,25 +35,54 @@ TEST_CASE("bad arguments are refused") {
              {"--out missing/folder/a.png", "missing/folder"},
              {"--out .", "folder"},
              {"--json missing/folder/a.json", "missing/folder"},
+             {"--samples 3", "2, 4 or 8"},
+             {"--samples 0", "0"},
+             {"--resolve both", "both"},
+             {"--depth-range", "--samples"},
+             {"--format rgba9", "rgb565_d16"},
+             {"--depth-scale odd", "odd"},
+             {"--epsilon 1.5", "1.5"},
+             {"--epsilon nan", "nan"},
+             {"--stereo -1", "-1"},
+             {"--time inf", "inf"},
+             {"--blend nosuch.cl", "nosuch.cl"},
+             {"--blend .", "function"},
+             {"--method nosuch", "weighted"},
+             {"--method adaptive:7", "8, 16"},
+             {"--method linked:8", "none"},
+             {"--method adaptive:", "8, 16"},
+             {"--method dual_peeling --layers 3", "dual_peeling"},
+             {"--method weighted --blend additive", "weighted"},
+             {"--memory 0", "such as 64MiB"},
+             {"--memory -1", "-1"},
+             {"--memory 64MB", "64MB"},
+             {"--memory 1.5GiB", "1.5GiB"},
+             {"--memory MiB", "MiB"},
+             {"--memory 99999999999GiB", "99999999999GiB"},
+             {"--memory 1KiB", "the least that works is"},
+             {"--memory 1KiB --method weighted", "over the budget of 1024"},
+             {"--reduce 0", "1, 2 or 4"},
+             {"--reduce 3", "1, 2 or 4"},
+             {"--reduce 2 --samples 4", "one sample"},
+             {"--reduce 2 --budget 40dB", "--reduce"},
+             {"--memory 1GiB --budget 40dB", "--memory"},
              {"--bogus", "--bogus"},
              {"another.obj", "another.obj"},
-         }) {
-        INFO(arguments);
-        require_refused(program.run("knot.obj " + arguments), named);
-    }
-    require_refused(program.run(""), "mesh");
-    require_refused(program.run("nosuch.obj"), "nosuch.obj");
-    require_refused(program.run(".", ""), "folder");
+         })
+        program.require_refused("knot.obj " + arguments, named);
+    program.require_refused("", "mesh");
+    program.require_refused("nosuch.obj", "nosuch.obj");
+    program.require_refused(".", "folder");
 }
 
 TEST_CASE("a machine without OpenCL is told so") {
-    const Program program;
-    require_refused(program.run("knot.obj", "OCL_ICD_VENDORS=/nonexistent"), "no OpenCL device");
-    require_refused(program.run("knot.obj", "CELLIST_DEVICE=nosuchdevice"), "nosuchdevice");
+    const Program program = oit_program();
+    program.require_refused("knot.obj", "no OpenCL device", "OCL_ICD_VENDORS=/nonexistent");
+    program.require_refused("knot.obj", "nosuchdevice", "CELLIST_DEVICE=nosuchdevice");
 }
 
 TEST_CASE("arguments that start with a minus and extreme ones are accepted") {
-    const Program program;
+    const Program program = oit_program();
     for (const std::string arguments :
          {"--view -30,-10", "--size 1x1", "--size 3x200", "--alpha 0", "--alpha 1",
           "--layers 4294967295", "--view 0,90 --opaque-floor", "--view 0,-90 --opaque-floor"}) {
@@ -111,8 +98,42 @@ TEST_CASE("arguments that start with a minus and extreme ones are accepted") {
     }
 }
 
+TEST_CASE("scenes with nothing to blend, or with nothing at all, are drawn") {
+    const Program program = oit_program();
+    for (const std::string scene : {"extreme-nothing", "extreme-opaque", "extreme-nan"}) {
+        INFO(scene);
+        const Outcome outcome =
+            program.run(scene + " --size 40x30 --frames 1 --reference --samples 2 --stereo 0.2");
+        INFO(outcome.error);
+        CHECK(outcome.exit_code == 0);
+        CHECK(contains(outcome.out, "0 of 2,400 pixels"));
+    }
+}
+
+TEST_CASE("the user's function is read from a file, and its failures are told") {
+    const Program program = oit_program();
+    const std::string head =
+        "static void blend(const OitFragment* fragment, float distance, float3* colour,\n"
+        "                  float3* transmittance) {\n";
+    (void)program.folder().write("fine.cl", head + "*transmittance *= 0.5f; }");
+    (void)program.folder().write("nan.cl", head + "*colour = NAN; }");
+    (void)program.folder().write("bad.cl", head + "*colour = nothing; }");
+    const std::string run = "knot.obj --size 64x48 --frames 1 --blend ";
+    const Outcome fine = program.run(run + "fine.cl");
+    INFO(fine.error);
+    CHECK(fine.exit_code == 0);
+    CHECK_FALSE(contains(fine.out, "NaN"));
+    CHECK(program.run(run + "'" CELLIST_FOG_PATH "'").exit_code == 0);
+    program.require_refused("knot.obj --size 64x48 --reference --blend fine.cl", "reference");
+    CHECK(contains(program.run(run + "nan.cl").out, "NaN"));
+    const Outcome bad = program.run(run + "bad.cl");
+    CHECK(bad.exit_code == 1);
+    CHECK(contains(bad.error, "bad.cl"));
+    CHECK(contains(bad.error, "nothing"));
+}
+
 TEST_CASE("the picture, the screen and the JSON agree, and pictures are equal in every run") {
-    const Program program;
+    const Program program = oit_program();
     const std::string arguments =
         "knot.obj --size 160x90 --opaque-floor --reference --frames 1 --json a.json --out ";
     const Outcome outcome = program.run(arguments + "a.png");
@@ -121,9 +142,9 @@ TEST_CASE("the picture, the screen and the JSON agree, and pictures are equal in
     CHECK(outcome.error.empty());
     const std::string json = read_file(program.folder() / "a.json");
     for (const std::string key :
-         {"device", "driver", "width", "height", "triangles", "fragments", "cells_nonempty",
-          "longest_list", "pool_bytes", "time_ms", "transform", "raster_insert", "sort_blend",
-          "frame", "psnr_db", "max_abs_error"}) {
+         {"scene", "method", "device", "driver", "width", "height", "triangles", "fragments",
+          "cells_nonempty", "longest_list", "pool_bytes", "time_ms", "transform", "raster_insert",
+          "sort_blend", "frame", "psnr_db", "max_abs_error"}) {
         INFO(key);
         CHECK(contains(json, "\"" + key + "\""));
     }
@@ -137,7 +158,7 @@ TEST_CASE("the picture, the screen and the JSON agree, and pictures are equal in
 }
 
 TEST_CASE("without a reference, its figures are null") {
-    const Program program;
+    const Program program = oit_program();
     REQUIRE(program.run("knot.obj --size 32x32 --frames 1 --json a.json --out a.png").exit_code ==
             0);
     const std::string json = read_file(program.folder() / "a.json");

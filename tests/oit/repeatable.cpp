@@ -13,11 +13,11 @@ namespace {
 
 std::vector<cl_float4> draw(const support::Mesh& mesh, std::optional<std::uint32_t> layers,
                             int runs, int& different) {
-    oit::Frame frame{.mesh = mesh,
-                     .view = support::frame_unit_sphere({25, 8}, 320, 240),
-                     .look = oit::studio_look(0.35F, oit::floor_height_under(mesh)),
-                     .layers = layers};
-    frame.floor = oit::make_floor(frame.look);
+    oit::Scene scene = oit::scene_of(mesh, 0.35F);
+    oit::add_floor(scene);
+    const oit::Frame frame{.scene = scene,
+                           .views = {support::frame_unit_sphere({25, 8}, 320, 240)},
+                           .quality = {.layers = layers}};
     oit::Renderer renderer(device(), frame);
     renderer.draw();
     const std::vector<cl_float4> first = renderer.image();

@@ -1,48 +1,133 @@
-// Puts the pieces of large and clipped triangles into the lists of the screen tiles that they
-// touch. positions: 3 floats a vertex; indices: 3 a triangle.
+// Puts large triangles and the pieces of clipped ones into a queue, and the blocks of pixels that they touch
+// into another.
+//
+//   counts           entries so far, from 0; those that a queue has no room for are counted as well
+//   ..._capacity     of the queues
 
-// True where no pixel centre of the tile is covered, because all lie outside of one edge.
-static bool raster_tile_missed(const RasterTriangle* t, int tile_x, int tile_y) {
-    const int last = RASTER_TILE_PIXELS - 1;
-    const int x = tile_x * RASTER_TILE_PIXELS, y = tile_y * RASTER_TILE_PIXELS;
-    bool missed = false;
+// Work-items that look for the blocks of a triangle together: on CPUs, where a block has one, each is
+// faster alone.
+#define RASTER_BIN_TEAM (RASTER_LANES == 1 ? 1u : 8u)
+
+// Nothing more is counted beyond this, so that the counters cannot wrap.
+#define RASTER_COUNT_MAX 0x80000000u
+
+#define RASTER_QUEUES                                                                              \
+    volatile global RasterCounts *counts, global RasterTriangle *triangles,                        \
+        const uint triangles_capacity, global RasterBlock *blocks, const uint blocks_capacity
+
+// Takes `wanted` entries of a queue, and returns the first.
+static inline uint raster_take(volatile global uint* count, uint wanted) {
+    return *count < RASTER_COUNT_MAX ? atomic_add(count, wanted) : RASTER_COUNT_MAX;
+}
+
+// The blocks of a bounding box, row by row.
+typedef struct {
+    int x, y, across;
+    uint all;
+} RasterBox;
+
+static inline RasterBox raster_box(const RasterTriangle* t) {
+    RasterBox box;
+    box.x = t->x_begin / RASTER_BLOCK_PIXELS;
+    box.y = t->y_begin / RASTER_BLOCK_PIXELS;
+    box.across = (t->x_end - 1) / RASTER_BLOCK_PIXELS - box.x + 1;
+    box.all = box.across * ((t->y_end - 1) / RASTER_BLOCK_PIXELS - box.y + 1);
+    return box;
+}
+
+// The place of block i. CELLIST_NONE where no sample of it is covered, because all lie outside of one
+// edge.
+static inline uint raster_touched(const RasterTriangle* t, const RasterBox* box, uint i) {
+    const int block_x = (box->x + (int)i % box->across) * RASTER_BLOCK_PIXELS;
+    const int block_y = (box->y + (int)i / box->across) * RASTER_BLOCK_PIXELS;
+    const int reach = RASTER_SAMPLES == 1 ? 0 : RASTER_REACH;
+    const int left = raster_centre(block_x) - reach;
+    const int top = raster_centre(block_y) - reach;
+    const int side = (RASTER_BLOCK_PIXELS - 1) * RASTER_SUBPIXELS + 2 * reach;
+    bool touches = true;
     for (int i = 0; i < 3; ++i) {
-        const int corner_x = raster_step_x(t, i) > 0 ? x + last : x;
-        const int corner_y = raster_step_y(t, i) > 0 ? y + last : y;
-        missed = missed || raster_edge(t, i, corner_x, corner_y) < raster_bias(t, i);
+        const int x = raster_dy(t, i) < 0 ? left + side : left;
+        const int y = raster_dx(t, i) > 0 ? top + side : top;
+        touches = touches && raster_edge(t, i, x, y) >= raster_bias(t, i);
     }
-    return missed;
+    return touches ? block_x + 65536u * block_y : CELLIST_NONE;
 }
 
-static void raster_bin_piece(CELLIST_LISTS(RasterBinned, bins), RasterTriangle* t, uint piece) {
-    if (!raster_visible(t) || !raster_orient(t)) return;
-    const RasterBinned binned = {t->index, piece};
-    for (int y = t->y_begin / RASTER_TILE_PIXELS; y * RASTER_TILE_PIXELS < t->y_end; ++y)
-        for (int x = t->x_begin / RASTER_TILE_PIXELS; x * RASTER_TILE_PIXELS < t->x_end; ++x)
-            if (!raster_tile_missed(t, x, y))
-                cellist_insert(bins, cellist_cell2(bins, x, y), binned);
+// Makes a triangle ready to be scanned. False where it is not visible.
+static inline bool raster_ready(const View* view, RasterTriangle* t) {
+    raster_bound(view, t);
+    if (!raster_visible(t) || !raster_orient(t)) return false;
+    raster_invert(t);
+    return true;
 }
 
-kernel void raster_bin(CELLIST_LISTS(RasterBinned, bins), const View kernel_view,
-                       global const RasterVertex* vertices, global const float* positions,
-                       global const uint* indices, uint count) {
-    const uint index = get_global_id(0);
-    if (index >= count) return;
-    const View view = kernel_view;
+// A work-item a triangle; then the group's triangles are shared out anew, for their blocks.
+kernel void raster_bin(RASTER_QUEUES, RASTER_SCENE) {
+    local uint listed[RASTER_BATCH * RASTER_PIECES_MAX];  // of the queue
+    local RasterTriangle near[RASTER_BATCH];              // the first of these
+    local uint listed_count, unclipped, block_count, first;
+    const uint item = get_local_id(0);
+    if (item == 0) listed_count = unclipped = block_count = 0;
+    barrier(CLK_LOCAL_MEM_FENCE);
+
     RasterTriangle t;
+    uint own = CELLIST_NONE;
     int outside_all, outside_any;
-    raster_load(vertices, indices, index, &t, &outside_all, &outside_any);
-    if (outside_all) return;
-    if (!outside_any) {
-        raster_bound(&view, &t);
-        if (!raster_small(&t)) raster_bin_piece(CELLIST_PASS(bins), &t, 0);
-        return;
+    if (raster_load(RASTER_SCENE_PASS, get_global_id(0), &t, &outside_all, &outside_any) &&
+        !outside_all) {
+        const View view = views[instances[t.instance].eye];
+        if (!outside_any) {
+            if (!raster_small(&t) && raster_ready(&view, &t)) own = atomic_inc(&unclipped);
+        } else {
+            RasterPolygon polygon;
+            raster_clip_triangle(RASTER_SCENE_PASS, &view, &t, &polygon);
+            for (int piece = 0; piece + 2 < polygon.count; ++piece) {
+                RasterTriangle clipped = t;
+                raster_piece(&view, &polygon, piece, &clipped);
+                if (!raster_ready(&view, &clipped)) continue;
+                const uint at = raster_take(&counts->triangles, 1);
+                if (at >= triangles_capacity) continue;
+                triangles[at] = clipped;
+                const uint place = atomic_inc(&listed_count);
+                listed[place] = at;
+                if (place < RASTER_BATCH) near[place] = clipped;
+            }
+        }
     }
-    RasterPolygon polygon;
-    raster_clip_triangle(&view, positions, &t, &polygon);
-    for (int piece = 0; piece + 2 < polygon.count; ++piece) {
-        raster_piece(&view, &polygon, piece, &t);
-        raster_bound(&view, &t);
-        raster_bin_piece(CELLIST_PASS(bins), &t, piece);
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (item == 0 && unclipped != 0) first = raster_take(&counts->triangles, unclipped);
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (own != CELLIST_NONE && first + own < triangles_capacity) {
+        const uint place = atomic_inc(&listed_count);
+        triangles[first + own] = t;
+        listed[place] = first + own;
+        if (place < RASTER_BATCH) near[place] = t;
+    }
+    barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
+
+    const uint count = listed_count;
+    const uint team = item / RASTER_BIN_TEAM, lane = item % RASTER_BIN_TEAM;
+    uint touched = 0;
+    for (uint n = team; n < count; n += RASTER_BATCH / RASTER_BIN_TEAM) {
+        const RasterTriangle listed_one = n < RASTER_BATCH ? near[n] : triangles[listed[n]];
+        const RasterBox box = raster_box(&listed_one);
+        for (uint i = lane; i < box.all; i += RASTER_BIN_TEAM)
+            touched += raster_touched(&listed_one, &box, i) != CELLIST_NONE;
+    }
+    uint next = touched != 0 ? atomic_add(&block_count, touched) : 0;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (item == 0 && block_count != 0) first = raster_take(&counts->blocks, block_count);
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (touched == 0) return;
+    next += first;
+    for (uint n = team; n < count; n += RASTER_BATCH / RASTER_BIN_TEAM) {
+        const RasterTriangle listed_one = n < RASTER_BATCH ? near[n] : triangles[listed[n]];
+        const RasterBox box = raster_box(&listed_one);
+        for (uint i = lane; i < box.all; i += RASTER_BIN_TEAM) {
+            const RasterBlock block = {listed[n], raster_touched(&listed_one, &box, i)};
+            if (block.place == CELLIST_NONE) continue;
+            if (next < blocks_capacity) blocks[next] = block;
+            ++next;
+        }
     }
 }

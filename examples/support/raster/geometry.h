@@ -26,9 +26,6 @@
 // largest image. Differences of snapped coordinates then take 25 bits, edge functions 51.
 #define RASTER_GUARD 4194304.0f
 
-// Side of a screen tile in pixels, a power of two.
-#define RASTER_TILE_PIXELS 32
-
 #define RASTER_PLANES 5
 #define RASTER_POLYGON_MAX 8
 #define RASTER_PIECES_MAX 6
@@ -71,11 +68,12 @@ static inline int raster_snap(float coordinate, float w, int side) {
     return (int)RASTER_RINT(coordinate / w) + side * (RASTER_SUBPIXELS / 2);
 }
 
-static inline RasterVertex raster_project(const View* view, float x, float y, float z) {
-    const float clip_x = raster_row(view->row_x, x, y, z);
-    const float clip_y = raster_row(view->row_y, x, y, z);
+static inline RasterVertex raster_project(const View* view, const RasterInstance* instance, float x,
+                                          float y, float z) {
+    const float clip_x = raster_row(instance->row_x, x, y, z);
+    const float clip_y = raster_row(instance->row_y, x, y, z);
     RasterVertex vertex;
-    vertex.w = raster_row(view->row_w, x, y, z);
+    vertex.w = raster_row(instance->row_w, x, y, z);
     vertex.outside = raster_outside(view, clip_x, clip_y, vertex.w);
     vertex.x = 0;
     vertex.y = 0;
@@ -87,11 +85,12 @@ static inline RasterVertex raster_project(const View* view, float x, float y, fl
 }
 
 // Corner j of a triangle, before clipping.
-static inline RasterClipVertex raster_corner(const View* view, int j, float x, float y, float z) {
+static inline RasterClipVertex raster_corner(const RasterInstance* instance, int j, float x,
+                                             float y, float z) {
     RasterClipVertex corner;
-    corner.x = raster_row(view->row_x, x, y, z);
-    corner.y = raster_row(view->row_y, x, y, z);
-    corner.w = raster_row(view->row_w, x, y, z);
+    corner.x = raster_row(instance->row_x, x, y, z);
+    corner.y = raster_row(instance->row_y, x, y, z);
+    corner.w = raster_row(instance->row_w, x, y, z);
     for (int k = 0; k < 3; ++k) corner.share[k] = k == j ? 1.0f : 0.0f;
     return corner;
 }

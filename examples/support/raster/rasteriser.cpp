@@ -1,7 +1,11 @@
 #include "raster/rasteriser.hpp"
 
+#include <algorithm>
 #include <initializer_list>
-#include <span>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 #include "input_error.hpp"
 #include "raster_kernels.hpp"
@@ -9,25 +13,65 @@
 namespace raster {
 namespace {
 
-constexpr int tile_pixels = RASTER_TILE_PIXELS;
+constexpr std::size_t batch_size = 64;         // RASTER_BATCH in triangle.clh
+constexpr std::size_t first_capacity = 16384;  // of the queues
 
-std::span<const cl_float> floats_of(const std::vector<glm::vec3>& vectors) {
-    static_assert(sizeof(glm::vec3) == 3 * sizeof(cl_float));
-    if (vectors.empty()) return {};
-    return {&vectors.front().x, 3 * vectors.size()};
+// What suits a device. On GPUs a work-item scans no more than tiny triangles alone, and the blocks of others
+// are shared by a work-item for each pixel; on CPUs a work-item is a loop of a thread, and what it
+// saves is the setup of triangles.
+struct Tuning {
+    int small_pixels;
+    int block_pixels;
+    std::size_t lanes;   // of a block
+    std::size_t teams;   // of lanes, in a work-group
+    std::size_t groups;  // for each compute unit
+};
+
+Tuning tuning_for(const cellist::Device& device) {
+    if (device.info().type == CL_DEVICE_TYPE_GPU) return {4, 4, 16, 4, 32};
+    return {32, 32, 1, 1, 64};
 }
 
-std::span<const cl_uint> indices_of(const support::Mesh& mesh) {
-    if (mesh.triangles.empty()) return {};
-    return {mesh.triangles.front().data(), 3 * mesh.triangles.size()};
-}
-
-cl_uint checked_count(std::size_t count, const char* what) {
-    constexpr std::size_t limit = 0xFFFFFFFF / 3;
+cl_uint checked_count(std::uint64_t count, const char* what) {
+    constexpr std::uint64_t limit = 0xFFFFFFFF / 3;
     if (count > limit)
-        throw support::InputError("the mesh has " + std::to_string(count) + " " + what +
+        throw support::InputError("the scene has " + std::to_string(count) + " " + what +
                                   ", the limit is " + std::to_string(limit));
     return static_cast<cl_uint>(count);
+}
+
+std::vector<Geometry::Part> parts_of(std::span<const support::Mesh* const> meshes) {
+    std::vector<Geometry::Part> parts;
+    std::uint64_t vertices = 0, triangles = 0;
+    for (const support::Mesh* mesh : meshes) {
+        const Geometry::Part part{checked_count(vertices, "vertices"),
+                                  checked_count(mesh->positions.size(), "vertices"),
+                                  checked_count(triangles, "triangles"),
+                                  checked_count(mesh->triangles.size(), "triangles")};
+        parts.push_back(part);
+        checked_count(vertices += part.vertices, "vertices");
+        checked_count(triangles += part.triangles, "triangles");
+    }
+    return parts;
+}
+
+std::vector<cl_float> floats_of(std::span<const support::Mesh* const> meshes,
+                                std::vector<glm::vec3> support::Mesh::*vectors) {
+    std::vector<cl_float> floats;
+    for (const support::Mesh* mesh : meshes)
+        for (const glm::vec3& v : mesh->*vectors) floats.insert(floats.end(), {v.x, v.y, v.z});
+    return floats;
+}
+
+std::vector<cl_uint> indices_of(std::span<const support::Mesh* const> meshes) {
+    std::vector<cl_uint> indices;
+    cl_uint first = 0;
+    for (const support::Mesh* mesh : meshes) {
+        for (const auto& triangle : mesh->triangles)
+            for (const std::uint32_t vertex : triangle) indices.push_back(first + vertex);
+        first += static_cast<cl_uint>(mesh->positions.size());
+    }
+    return indices;
 }
 
 std::string joined(std::initializer_list<std::string_view> parts) {
@@ -36,25 +80,83 @@ std::string joined(std::initializer_list<std::string_view> parts) {
     return text;
 }
 
-cellist::Source setup_source(const cellist::Device& device) {
-    return {.text = joined({kernels::geometry_h, kernels::transform_cl, kernels::triangle_clh,
+std::string defines(const cellist::Device& device, const Sampling& sampling) {
+    const Tuning tuning = tuning_for(device);
+    return "#define RASTER_SMALL_PIXELS " + std::to_string(tuning.small_pixels) +
+           "\n#define RASTER_BLOCK_PIXELS " + std::to_string(tuning.block_pixels) +
+           "\n#define RASTER_LANES " + std::to_string(tuning.lanes) + "\n#define RASTER_TEAMS " +
+           std::to_string(tuning.teams) + "\n#define RASTER_SAMPLES " +
+           std::to_string(sampling.samples) + "\n" +
+           (sampling.depth_range ? "#define RASTER_DEPTH_RANGE\n" : "");
+}
+
+cellist::Source setup_source(const cellist::Device& device, const Sampling& sampling) {
+    return {.text = joined({defines(device, sampling), "#define RASTER_WIDE", kernels::geometry_h,
+                            kernels::samples_h, kernels::transform_cl, kernels::triangle_clh,
                             kernels::scan_clh, kernels::bin_cl}),
             .file_name = "raster_setup.cl",
             .options = build_options(device)};
 }
 
+// A row of a view, in front of which the mesh is placed. Rounded once.
+void set_row(cl_float (&out)[4], const cl_float (&row)[4], const glm::dmat4& to_world) {
+    const glm::dvec4 in(row[0], row[1], row[2], row[3]);
+    const glm::dvec4 product = in * to_world;
+    for (int i = 0; i < 4; ++i) out[i] = static_cast<cl_float>(product[i]);
+}
+
+void append_batches(std::vector<RasterBatch>& batches, std::size_t instance, cl_uint first,
+                    cl_uint count) {
+    constexpr auto size = static_cast<cl_uint>(batch_size);
+    for (cl_uint begin = 0; begin < count; begin += std::min(size, count - begin))
+        batches.push_back({static_cast<cl_uint>(instance), first + begin,
+                           first + begin + std::min(size, count - begin)});
+}
+
+cellist::Range batches_range(std::size_t batches) {
+    return cellist::Range::padded(batches * batch_size, batch_size);
+}
+
+cellist::Range block_groups(const cellist::Device& device) {
+    const Tuning tuning = tuning_for(device);
+    const std::size_t items = tuning.teams * tuning.lanes;
+    cellist::Range range(device.info().compute_units * tuning.groups * items);
+    range.local = {items, 1, 1};
+    return range;
+}
+
 }  // namespace
 
-DeviceMesh::DeviceMesh(const cellist::Device& device, const support::Mesh& mesh)
-    : positions(device, floats_of(mesh.positions)),
-      normals(device, floats_of(mesh.normals)),
-      indices(device, indices_of(mesh)),
-      vertices(checked_count(mesh.positions.size(), "vertices")),
-      triangles(checked_count(mesh.triangles.size(), "triangles")) {}
+Geometry::Geometry(const cellist::Device& device, std::span<const support::Mesh* const> meshes)
+    : parts_(parts_of(meshes)),
+      positions_(device, floats_of(meshes, &support::Mesh::positions)),
+      normals_(device, floats_of(meshes, &support::Mesh::normals)),
+      indices_(device, indices_of(meshes)) {}
 
-std::uint64_t DeviceMesh::bytes() const {
-    return (positions.size() + normals.size()) * sizeof(cl_float) +
-           indices.size() * sizeof(cl_uint);
+std::uint64_t Geometry::device_bytes() const {
+    return (positions_.size() + normals_.size()) * sizeof(cl_float) +
+           indices_.size() * sizeof(cl_uint);
+}
+
+RasterInstance instance_of(const Placed& placed, const View& view, cl_uint eye) {
+    RasterInstance instance{};
+    set_row(instance.row_x, view.row_x, placed.to_world);
+    set_row(instance.row_y, view.row_y, placed.to_world);
+    set_row(instance.row_w, view.row_w, placed.to_world);
+    // Normals turn with the cofactors, by the length of which they grow.
+    const glm::dmat3 m(placed.to_world);
+    const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]),
+                               glm::cross(m[0], m[1]));
+    const double scale = std::cbrt(std::abs(glm::determinant(cofactors)));
+    for (int i = 0; i < 3; ++i) {
+        const double by = scale > 0 ? scale : 1;
+        instance.normal_x[i] = static_cast<cl_float>(cofactors[i].x / by);
+        instance.normal_y[i] = static_cast<cl_float>(cofactors[i].y / by);
+        instance.normal_z[i] = static_cast<cl_float>(cofactors[i].z / by);
+    }
+    instance.eye = eye;
+    instance.tag = placed.tag;
+    return instance;
 }
 
 bool divides_exactly(const cellist::Device& device) {
@@ -69,51 +171,139 @@ std::string build_options(const cellist::Device& device) {
     return divides_exactly(device) ? "-cl-fp32-correctly-rounded-divide-sqrt" : "";
 }
 
-cellist::Source Pass::pass_source(const cellist::Device& device, std::string_view source,
-                                  const std::string& name) {
-    return {.text = joined({kernels::geometry_h, kernels::triangle_clh, kernels::scan_clh, source,
-                            kernels::draw_clh}),
-            .file_name = name,
-            .options = build_options(device)};
+SetupKernels::SetupKernels(const cellist::Device& device, const Sampling& sampling)
+    : transform(device, setup_source(device, sampling), "raster_transform", cellist::type<View>,
+                cellist::type<RasterInstance>, cellist::type<RasterBatch>,
+                cellist::type<RasterVertex>, cellist::type<RasterTriangle>,
+                cellist::type<RasterBlock>, cellist::type<RasterCounts>),
+      bin(device, setup_source(device, sampling), "raster_bin", cellist::type<View>,
+          cellist::type<RasterInstance>, cellist::type<RasterBatch>, cellist::type<RasterVertex>,
+          cellist::type<RasterTriangle>, cellist::type<RasterBlock>, cellist::type<RasterCounts>) {}
+
+cellist::Source Pass::pass_source(const cellist::Device& device, const Sampling& sampling,
+                                  std::string_view source, const std::string& name,
+                                  const std::string& integer) {
+    return {
+        .text = joined({defines(device, sampling), integer == "long" ? "#define RASTER_WIDE" : "",
+                        kernels::geometry_h, kernels::samples_h, kernels::triangle_clh,
+                        kernels::scan_clh, source, kernels::draw_clh}),
+        .file_name = name,
+        .options = build_options(device)};
 }
 
-SetupKernels::SetupKernels(const cellist::Device& device)
-    : transform(device, setup_source(device), "raster_transform", cellist::type<View>,
-                cellist::type<RasterVertex>, cellist::type<RasterBinned>),
-      bin(device, setup_source(device), "raster_bin", cellist::type<View>,
-          cellist::type<RasterVertex>, cellist::type<RasterBinned>) {}
+// ---- Projection ------------------------------------------------------------------------------
 
-Drawing::Drawing(const cellist::Device& device, SetupKernels& kernels, const DeviceMesh& mesh,
-                 const View& view)
+namespace {
+
+std::vector<RasterBatch> vertex_batches(const Geometry& geometry, std::span<const Placed> placed,
+                                        std::size_t eyes) {
+    std::vector<RasterBatch> batches;
+    for (std::size_t i = 0; i < eyes * placed.size(); ++i) {
+        const Geometry::Part& part = geometry.part(placed[i % placed.size()].mesh);
+        append_batches(batches, i, part.first_vertex, part.vertices);
+    }
+    return batches;
+}
+
+std::size_t projected_vertices(const Geometry& geometry, std::span<const Placed> placed,
+                               std::size_t eyes) {
+    std::uint64_t vertices = 0;
+    for (const Placed& one : placed) vertices += eyes * geometry.part(one.mesh).vertices;
+    return checked_count(vertices, "vertices in its instances");
+}
+
+}  // namespace
+
+Projection::Projection(const cellist::Device& device, SetupKernels& kernels,
+                       const Geometry& geometry, std::span<const Placed> placed,
+                       std::span<const View> views)
     : kernels_(kernels),
-      mesh_(mesh),
-      view_(view),
-      vertices_(device, mesh.vertices),
-      bins_(device, {static_cast<std::uint64_t>((view.width + tile_pixels - 1) / tile_pixels),
-                     static_cast<std::uint64_t>((view.height + tile_pixels - 1) / tile_pixels)}) {}
-
-void Drawing::transform() {
-    kernels_.transform.run(cellist::Range::padded(mesh_.vertices, 64), view_, mesh_.positions,
-                           mesh_.vertices, vertices_);
+      geometry_(geometry),
+      eyes_(views.size()),
+      width_(views.front().width),
+      height_(views.front().height),
+      views_(device, views),
+      instances_(device, views.size() * placed.size()),
+      batches_(device, vertex_batches(geometry, placed, views.size())),
+      vertices_(device, projected_vertices(geometry, placed, views.size())) {
+    for (const Placed& one : placed) meshes_.push_back(one.mesh);
+    move(placed, views);
 }
 
-void Drawing::bin() {
-    const cellist::BuildReport report =
-        bins_.build(kernels_.bin, cellist::Range::padded(mesh_.triangles, 64), view_, vertices_,
-                    mesh_.positions, mesh_.indices, mesh_.triangles);
-    has_bins_ = report.stored > 0;
+void Projection::move(std::span<const Placed> placed, std::span<const View> views) {
+    std::vector<RasterInstance> instances;
+    cl_uint next = 0;
+    for (cl_uint eye = 0; eye < views.size(); ++eye)
+        for (const Placed& one : placed) {
+            const Geometry::Part& part = geometry_.part(one.mesh);
+            instances.push_back(instance_of(one, views[eye], eye));
+            instances.back().projected = next - part.first_vertex;
+            next += part.vertices;
+        }
+    instances_.upload_async(instances).wait();
+    views_.upload_async(views).wait();
 }
 
-cellist::Range Drawing::tile_rows() const {
-    const auto across = static_cast<std::size_t>(bins_.shape().extent(0));
-    const auto down = static_cast<std::size_t>(bins_.shape().extent(1));
-    cellist::Range range(across, down * tile_pixels);
-    range.local = {1, tile_pixels, 1};
-    return range;
+void Projection::transform() {
+    kernels_.transform.run(batches_range(batches_.size()), views_, instances_, batches_,
+                           geometry_.positions(), vertices_);
 }
 
-std::uint64_t Drawing::device_bytes() const {
-    return vertices_.size() * sizeof(RasterVertex) + bins_.pool_bytes();
+std::uint64_t Projection::device_bytes() const {
+    return views_.size() * sizeof(View) + instances_.size() * sizeof(RasterInstance) +
+           batches_.size() * sizeof(RasterBatch) + vertices_.size() * sizeof(RasterVertex);
+}
+
+// ---- Triangles -------------------------------------------------------------------------------
+
+std::vector<RasterBatch> Projection::triangle_batches(std::span<const std::size_t> chosen) const {
+    std::vector<RasterBatch> batches;
+    for (std::size_t eye = 0; eye < eyes_; ++eye)
+        for (const std::size_t i : chosen) {
+            const Geometry::Part& part = geometry_.part(meshes_.at(i));
+            append_batches(batches, eye * meshes_.size() + i, part.first_triangle, part.triangles);
+        }
+    // Pieces of triangles are numbered, 8 for each.
+    checked_count(8 * batches.size() * batch_size, "pieces of triangles in its instances");
+    return batches;
+}
+
+Triangles::Triangles(const cellist::Device& device, const Projection& projection,
+                     std::span<const std::size_t> chosen)
+    : device_(device),
+      projection_(projection),
+      groups_(block_groups(device)),
+      batches_(device, projection.triangle_batches(chosen)),
+      queue_(device, first_capacity),
+      blocks_(device, first_capacity),
+      counts_(device, 1) {}
+
+void Triangles::bin() {
+    const Projection& p = projection_;
+    counts_.fill({0, 0});
+    p.kernels_.bin.run(triangles(), counts_, queue_, capacity_of(queue_), blocks_,
+                       capacity_of(blocks_), p.views_, p.instances_, p.vertices_,
+                       p.geometry_.positions(), p.geometry_.indices(), batches_);
+    counted_ = counts_.download_async();
+    complete_.reset();
+}
+
+bool Triangles::complete() {
+    if (complete_) return *complete_;
+    const RasterCounts counts = counted_.get().front();
+    complete_ = counts.triangles <= queue_.size() && counts.blocks <= blocks_.size();
+    if (counts.triangles > queue_.size())
+        queue_ = cellist::Buffer<RasterTriangle>(device_, counts.triangles);
+    if (counts.blocks > blocks_.size())
+        blocks_ = cellist::Buffer<RasterBlock>(device_, counts.blocks);
+    return *complete_;
+}
+
+cellist::Range Triangles::triangles() const { return batches_range(batches_.size()); }
+
+std::uint64_t Triangles::device_bytes() const {
+    return batches_.size() * sizeof(RasterBatch) + queue_.size() * sizeof(RasterTriangle) +
+           blocks_.size() * sizeof(RasterBlock) + counts_.size() * sizeof(RasterCounts);
 }
 
 }  // namespace raster

@@ -1,8 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
 
 #include <cellist/cellist.hpp>
 
@@ -11,97 +16,168 @@
 
 namespace raster {
 
-/// A piece of a large or clipped triangle in a tile's list.
-struct RasterBinned {
-    cl_uint triangle;
-    cl_uint piece;
+/// Meshes on the device, one behind the other.
+class Geometry {
+public:
+    /// Throws InputError where the meshes have more than 2^32 / 3 triangles or vertices.
+    Geometry(const cellist::Device& device, std::span<const support::Mesh* const> meshes);
+
+    struct Part {
+        cl_uint first_vertex, vertices;
+        cl_uint first_triangle, triangles;
+    };
+    [[nodiscard]] const Part& part(std::size_t mesh) const { return parts_.at(mesh); }
+
+    [[nodiscard]] const cellist::Buffer<cl_float>& positions() const { return positions_; }
+    /// 3 floats a vertex, as positions().
+    [[nodiscard]] const cellist::Buffer<cl_float>& normals() const { return normals_; }
+    /// 3 a triangle, of vertices of all meshes.
+    [[nodiscard]] const cellist::Buffer<cl_uint>& indices() const { return indices_; }
+    [[nodiscard]] std::uint64_t device_bytes() const;
+
+private:
+    std::vector<Part> parts_;
+    cellist::Buffer<cl_float> positions_;
+    cellist::Buffer<cl_float> normals_;
+    cellist::Buffer<cl_uint> indices_;
 };
-CELLIST_STRUCT(RasterBinned, triangle, piece);
 
-/// A mesh on the device.
-struct DeviceMesh {
-    cellist::Buffer<cl_float> positions;  ///< 3 a vertex
-    cellist::Buffer<cl_float> normals;    ///< 3 a vertex
-    cellist::Buffer<cl_uint> indices;     ///< 3 a triangle
-    cl_uint vertices;
-    cl_uint triangles;
-
-    /// Throws InputError where the mesh has more than 2^32 / 3 triangles or vertices.
-    DeviceMesh(const cellist::Device& device, const support::Mesh& mesh);
-
-    [[nodiscard]] std::uint64_t bytes() const;
+/// A mesh of a Geometry at a place in the world.
+struct Placed {
+    std::size_t mesh = 0;
+    glm::dmat4 to_world{1.0};
+    cl_uint tag = 0;  ///< for the user's kernels
 };
+
+/// How a view sees a mesh, to the last bit as the device does. The projected vertices' place is left
+/// at 0.
+[[nodiscard]] RasterInstance instance_of(const Placed& placed, const View& view, cl_uint eye);
 
 /// The build options of every kernel of the rasteriser: correctly rounded division where the device
 /// has it, so that the CPU can follow it bit for bit.
 [[nodiscard]] std::string build_options(const cellist::Device& device);
 [[nodiscard]] bool divides_exactly(const cellist::Device& device);
 
-/// The kernels of one pass: where samples go is up to its source, which defines RASTER_TARGET,
+/// What passes and the tiles are compiled for.
+struct Sampling {
+    int samples = 1;           ///< of a pixel: 1, 2, 4 or 8
+    bool depth_range = false;  ///< fragments have a least and a greatest depth
+};
+
+/// The kernels that every drawing needs, built once for a device.
+struct SetupKernels {
+    cellist::Kernel transform;
+    cellist::Kernel bin;
+    explicit SetupKernels(const cellist::Device& device, const Sampling& sampling = {});
+};
+
+/// The kernels of one pass: where fragments go is up to its source, which defines RASTER_TARGET,
 /// RASTER_TARGET_PASS and raster_emit (see draw.clh).
 class Pass {
 public:
     /// `uses` names the types of the pass, as in cellist::Kernel.
     template <class... Uses>
-    Pass(const cellist::Device& device, std::string_view source, const std::string& name,
-         const Uses&... uses)
-        : small_(device, pass_source(device, source, name), "raster_draw_small",
-                 cellist::type<View>, cellist::type<RasterVertex>, cellist::type<RasterBinned>,
-                 uses...),
-          tiles_(device, pass_source(device, source, name), "raster_draw_tiles",
-                 cellist::type<View>, cellist::type<RasterVertex>, cellist::type<RasterBinned>,
-                 uses...) {}
+    Pass(const cellist::Device& device, const Sampling& sampling, std::string_view source,
+         const std::string& name, const Uses&... uses)
+        : small_(device, pass_source(device, sampling, source, name, "int"), "raster_draw_small",
+                 cellist::type<View>, cellist::type<RasterInstance>, cellist::type<RasterBatch>,
+                 cellist::type<RasterVertex>, cellist::type<RasterTriangle>,
+                 cellist::type<RasterBlock>, cellist::type<RasterCounts>, uses...),
+          blocks_(device, pass_source(device, sampling, source, name, "long"), "raster_draw_blocks",
+                  cellist::type<View>, cellist::type<RasterInstance>, cellist::type<RasterBatch>,
+                  cellist::type<RasterVertex>, cellist::type<RasterTriangle>,
+                  cellist::type<RasterBlock>, cellist::type<RasterCounts>, uses...) {}
 
 private:
-    friend class Drawing;
-    static cellist::Source pass_source(const cellist::Device& device, std::string_view source,
-                                       const std::string& name);
+    friend class Triangles;
+    static cellist::Source pass_source(const cellist::Device& device, const Sampling& sampling,
+                                       std::string_view source, const std::string& name,
+                                       const std::string& integer);
     cellist::Kernel small_;
-    cellist::Kernel tiles_;
+    cellist::Kernel blocks_;
 };
 
-/// The kernels that every pass needs, built once for a device.
-struct SetupKernels {
-    cellist::Kernel transform;
-    cellist::Kernel bin;
-    explicit SetupKernels(const cellist::Device& device);
-};
-
-/// One mesh in one image: transforms it, sorts its large triangles into screen tiles, and draws it
-/// any number of times.
-class Drawing {
+/// Instances of meshes, projected into one or more views of the same size: a view an eye.
+class Projection {
 public:
-    /// Refers to the mesh and the kernels, which must outlive it.
-    Drawing(const cellist::Device& device, SetupKernels& kernels, const DeviceMesh& mesh,
-            const View& view);
+    /// Refers to the geometry and the kernels, which must outlive it.
+    Projection(const cellist::Device& device, SetupKernels& kernels, const Geometry& geometry,
+               std::span<const Placed> placed, std::span<const View> views);
+
+    /// Moves the instances, which stay as many as they were, and the eyes. Blocks.
+    void move(std::span<const Placed> placed, std::span<const View> views);
 
     /// Projects the vertices. Does not block.
     void transform();
 
-    /// Fills the tiles. Blocks until they are filled.
+    [[nodiscard]] const cellist::Buffer<View>& views() const { return views_; }
+    [[nodiscard]] std::uint64_t device_bytes() const;
+
+private:
+    friend class Triangles;
+    [[nodiscard]] std::vector<RasterBatch> triangle_batches(
+        std::span<const std::size_t> chosen) const;
+
+    SetupKernels& kernels_;
+    const Geometry& geometry_;
+    std::size_t eyes_;
+    cl_int width_;
+    cl_int height_;
+    std::vector<std::size_t> meshes_;  ///< of the instances, in each eye
+    cellist::Buffer<View> views_;
+    cellist::Buffer<RasterInstance> instances_;
+    cellist::Buffer<RasterBatch> batches_;
+    cellist::Buffer<RasterVertex> vertices_;
+};
+
+/// The triangles of some of the instances: divides the large ones into blocks of pixels, and draws all
+/// any number of times.
+class Triangles {
+public:
+    /// `chosen` are indices of the projection's instances. Refers to the projection, which must
+    /// outlive it.
+    Triangles(const cellist::Device& device, const Projection& projection,
+              std::span<const std::size_t> chosen);
+
+    /// Puts the large triangles and their blocks into queues. Does not block.
     void bin();
+
+    /// Whether the queues had room for all. If not, they have more now, and whoever has drawn since
+    /// bin() begins again there. Blocks.
+    [[nodiscard]] bool complete();
 
     /// Draws with a pass whose RASTER_TARGET takes `targets`. Does not block.
     template <class... Targets>
     void draw(Pass& pass, const Targets&... targets) {
-        pass.small_.run(cellist::Range::padded(mesh_.triangles, 64), targets..., view_, vertices_,
-                        mesh_.indices, mesh_.triangles);
-        if (has_bins_)
-            pass.tiles_.run(tile_rows(), targets..., bins_, view_, vertices_, mesh_.positions,
-                            mesh_.indices);
+        const Projection& p = projection_;
+        const auto run = [&](cellist::Kernel& kernel, const cellist::Range& range,
+                             const auto&... queue) {
+            kernel.run(range, targets..., queue..., p.views_, p.instances_, p.vertices_,
+                       p.geometry_.positions(), p.geometry_.indices(), batches_);
+        };
+        run(pass.small_, triangles());
+        run(pass.blocks_, groups_, counts_, queue_, capacity_of(queue_), blocks_,
+            capacity_of(blocks_));
     }
 
     [[nodiscard]] std::uint64_t device_bytes() const;
 
 private:
-    [[nodiscard]] cellist::Range tile_rows() const;
+    [[nodiscard]] cellist::Range triangles() const;
+    template <class T>
+    [[nodiscard]] static cl_uint capacity_of(const cellist::Buffer<T>& queue) {
+        return static_cast<cl_uint>(queue.size());
+    }
 
-    SetupKernels& kernels_;
-    const DeviceMesh& mesh_;
-    View view_;
-    cellist::Buffer<RasterVertex> vertices_;
-    cellist::Lists<RasterBinned> bins_;
-    bool has_bins_ = false;
+    const cellist::Device& device_;
+    const Projection& projection_;
+    cellist::Range groups_;
+    cellist::Buffer<RasterBatch> batches_;
+    cellist::Buffer<RasterTriangle> queue_;
+    cellist::Buffer<RasterBlock> blocks_;
+    cellist::Buffer<RasterCounts> counts_;
+    cellist::Pending<std::vector<RasterCounts>> counted_;
+    std::optional<bool> complete_;  ///< since bin(), once it is known
 };
 
 }  // namespace raster

@@ -1,9 +1,13 @@
-// Projects the vertices of a mesh. positions: 3 floats a vertex.
-kernel void raster_transform(const View view, global const float* positions, uint count,
+// Projects the vertices of all instances, a work-group for each batch of them. positions: 3 floats a
+// vertex.
+kernel void raster_transform(global const View* views, global const RasterInstance* instances,
+                             global const RasterBatch* batches, global const float* positions,
                              global RasterVertex* vertices) {
-    const uint i = get_global_id(0);
-    if (i >= count) return;
+    const RasterBatch batch = batches[get_group_id(0)];
+    const uint i = batch.first + get_local_id(0);
+    if (i >= batch.end) return;
     const float3 p = vload3(i, positions);
-    const View local_view = view;
-    vertices[i] = raster_project(&local_view, p.x, p.y, p.z);
+    const RasterInstance instance = instances[batch.instance];
+    const View view = views[instance.eye];
+    vertices[i + instance.projected] = raster_project(&view, &instance, p.x, p.y, p.z);
 }

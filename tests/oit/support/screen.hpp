@@ -12,8 +12,8 @@
 
 namespace cellist::test {
 
-/// What the rasteriser made of a mesh: for each pixel how often it was covered, and the depth of
-/// one of the samples.
+/// What the rasteriser made of a mesh: for each sample how often it was covered, and for each pixel
+/// the depth of one of the fragments.
 struct Coverage {
     std::vector<cl_uint> counts;
     std::vector<cl_float> depths;
@@ -33,29 +33,39 @@ inline raster::View pixel_view(int width, int height) {
 }
 
 /// Draws a mesh through the rasteriser, with a pass that counts.
-inline Coverage coverage_of(const support::Mesh& mesh, const raster::View& view) {
+inline Coverage coverage_of(const support::Mesh& mesh, const raster::View& view, int samples = 1) {
     constexpr auto source = R"(
 #define RASTER_TARGET volatile global uint* counts, global float* depths
 #define RASTER_TARGET_PASS counts, depths
-static inline void raster_emit(RASTER_TARGET, const View* view, const RasterSample* sample) {
-    const uint pixel = sample->y * view->width + sample->x;
-    atomic_inc(&counts[pixel]);
-    depths[pixel] = sample->depth;
+static inline void raster_emit(RASTER_TARGET, const View* view,
+                               global const RasterInstance* instance, uint piece,
+                               const RasterFragment* fragment) {
+    const uint pixel = fragment->y * view->width + fragment->x;
+    for (int s = 0; s < RASTER_SAMPLES; ++s)
+        if (fragment->coverage >> s & 1) atomic_inc(&counts[pixel * RASTER_SAMPLES + s]);
+    depths[pixel] = fragment->depth;
 }
 )";
-    raster::SetupKernels setup(device());
-    raster::Pass pass(device(), source, "count.cl");
-    const raster::DeviceMesh on_device(device(), mesh);
-    raster::Drawing drawing(device(), setup, on_device, view);
+    const raster::Sampling sampling{.samples = samples};
+    raster::SetupKernels setup(device(), sampling);
+    raster::Pass pass(device(), sampling, source, "count.cl");
+    const support::Mesh* const meshes[] = {&mesh};
+    const raster::Geometry geometry(device(), meshes);
+    const raster::Placed placed[] = {{}};
+    raster::Projection projection(device(), setup, geometry, placed, std::span(&view, 1));
+    const std::size_t all[] = {0};
+    raster::Triangles triangles(device(), projection, all);
     const auto pixels =
         static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
-    Buffer<cl_uint> counts(device(), pixels);
+    Buffer<cl_uint> counts(device(), pixels * static_cast<std::size_t>(samples));
     Buffer<cl_float> depths(device(), pixels);
-    counts.fill(0);
-    depths.fill(0);
-    drawing.transform();
-    drawing.bin();
-    drawing.draw(pass, counts, depths);
+    projection.transform();
+    do {
+        counts.fill(0);
+        depths.fill(0);
+        triangles.bin();
+        triangles.draw(pass, counts, depths);
+    } while (!triangles.complete());
     return {counts.download(), depths.download()};
 }
 

@@ -1,0 +1,55 @@
+// Whole frames, from the vertices to the image on the device: all layers in lists. First with a wait
+// behind each, then with two at once, where the host enqueues one while the device draws the other.
+
+#include <array>
+
+#include "oit/frames/run.hpp"
+#include "renderer.hpp"
+#include "stopwatch.hpp"
+
+namespace bench {
+namespace {
+
+// From one image to the next where two frames are drawn at once, each in memory of its own.
+Samples time_two_at_once(const Run& run, oit::Renderer& one, oit::Renderer& other) {
+    const std::array renderers{&one, &other};
+    std::size_t started = 0;
+    renderers[started]->start();
+    const std::function<double()> next = [&] {
+        const support::Stopwatch stopwatch;
+        const std::size_t before = started;
+        started = 1 - started;
+        renderers[started]->start();
+        renderers[before]->finish();
+        return stopwatch.ms();
+    };
+    const Samples times = run.draw_by_turns({&next, 1}).front();
+    renderers[started]->finish();
+    return times;
+}
+
+}  // namespace
+
+void measure_frame_times(Run& run) {
+    const Case dragon = mesh_case("dragon.ply");
+    const std::array cases{
+        mesh_case("teapot.obj"), dragon,
+        with(dragon, "4 samples", [](auto& options) { options.quality.samples = 4; }),
+        scene_case("gearworks")};
+    run.measure("frame_times", cases, [&](const Stage& stage) -> std::vector<Run::Figure> {
+        oit::Renderer renderer(run.device(), stage.frame);
+        renderer.warm_up();
+        const std::function<double()> draw = [&] { return renderer.draw(); };
+        Run::Figure figure = to_json(run.draw_by_turns({&draw, 1}).front());
+        oit::Renderer other(run.device(), stage.frame);
+        other.warm_up();
+        figure["two_at_once"] = to_json(time_two_at_once(run, renderer, other));
+        if (const auto lengths = renderer.method().lengths()) {
+            figure["fragments"] = lengths->total;
+            figure["most_layers"] = lengths->longest;
+        }
+        return {figure};
+    });
+}
+
+}  // namespace bench

@@ -1,0 +1,100 @@
+#include "oit/frames/other_orders.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "image.hpp"
+#include "node_layout.hpp"
+#include "reference_blend.hpp"
+
+namespace bench {
+namespace {
+
+using Fragments = std::span<const oit::ReferenceFragment>;
+
+constexpr int most_orders = 100'000;  // of a pixel that are tried
+
+double error_of(const glm::dvec3& colour, const cl_float4& pixel) {
+    double error = 0;
+    for (int channel = 0; channel < 3; ++channel)
+        error = std::max(
+            error, std::abs(support::srgb_from_linear(colour[channel]) -
+                            support::srgb_from_linear(static_cast<double>(pixel.s[channel]))));
+    return error;
+}
+
+// The light that a pixel's fragments send, without what is behind them, in some order.
+glm::dvec3 light_of(Fragments fragments, const std::vector<std::size_t>& order,
+                    std::size_t samples) {
+    const oit::ReferenceOptions options;
+    glm::dvec3 sum(0);
+    for (std::size_t sample = 0; sample < samples; ++sample) {
+        oit::ReferenceLight light(1, options);
+        for (const std::size_t i : order) light.add(fragments[i], sample);
+        sum += light.end(glm::dvec3(0), std::numeric_limits<double>::infinity());
+    }
+    return sum / static_cast<double>(samples);
+}
+
+// The fragments from `first` to before `end`, each close to the next.
+struct Group {
+    std::size_t first, end;
+};
+
+std::vector<Group> groups_of(Fragments fragments) {
+    std::vector<Group> groups;
+    for (std::size_t i = 0; i < fragments.size(); ++i) {
+        const double depth = fragments[i].depth;
+        if (i > 0 && depth - fragments[i - 1].depth <= oit::depth_resolution * depth)
+            groups.back().end = i + 1;
+        else
+            groups.push_back({i, i + 1});
+    }
+    std::erase_if(groups, [](const Group& group) { return group.end - group.first < 2; });
+    return groups;
+}
+
+// The next combination of orders within the groups; false behind the last.
+bool next_order(std::vector<std::size_t>& order, const std::vector<Group>& groups) {
+    return std::ranges::any_of(groups, [&](const Group& group) {
+        const auto at = [&](std::size_t i) {
+            return order.begin() + static_cast<std::ptrdiff_t>(i);
+        };
+        return std::next_permutation(at(group.first), at(group.end));
+    });
+}
+
+// What is behind the fragments counts the same in each order, for the light that passes is a product.
+bool is_of_another_order(Fragments fragments, const glm::dvec3& colour, const cl_float4& pixel,
+                         std::size_t samples) {
+    const std::vector<Group> groups = groups_of(fragments);
+    std::vector<std::size_t> order(fragments.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const glm::dvec3 sorted = light_of(fragments, order, samples);
+    for (int tried = 0; tried < most_orders && next_order(order, groups); ++tried)
+        if (error_of(colour + light_of(fragments, order, samples) - sorted, pixel) <= 1.0 / 255)
+            return true;
+    return false;
+}
+
+}  // namespace
+
+std::uint64_t pixels_of_another_order(const oit::Reference& reference,
+                                      std::span<const cl_float4> image, int samples) {
+    std::uint64_t count = 0;
+    for (std::size_t p = 0; p < image.size(); ++p) {
+        const glm::dvec3& colour = reference.image[p];
+        if (error_of(colour, image[p]) <= 1.0 / 255) continue;
+        const Fragments fragments =
+            Fragments(reference.fragments)
+                .subspan(reference.offsets[p], reference.offsets[p + 1] - reference.offsets[p]);
+        if (is_of_another_order(fragments, colour, image[p], static_cast<std::size_t>(samples)))
+            ++count;
+    }
+    return count;
+}
+
+}  // namespace bench

@@ -1,0 +1,70 @@
+#include "cases.hpp"
+
+#include <sstream>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "command_line.hpp"
+#include "input_error.hpp"
+#include "scenes.hpp"
+
+namespace oit {
+namespace {
+
+// Ten scenes and views, three budgets each. What each stands for:
+constexpr GridView views[]{
+    // many pixels without layers, and few layers
+    {"teapot", "teapot.obj --view 25,8", {"30dB", "40dB", "1/255"}},
+    // opaque surfaces in between; little light passes
+    {"teapot-floor",
+     "teapot.obj --view 160,35 --alpha 0.7 --opaque-floor",
+     {"35dB", "55dB", "4/255"}},
+    // small triangles
+    {"dragon", "dragon.ply --view 25,8", {"30dB", "40dB", "1/255"}},
+    // coverage of samples
+    {"dragon-samples",
+     "dragon.ply --view -100,20 --alpha 0.6 --samples 4",
+     {"35dB", "45dB", "2/255"}},
+    // many layers, instances and opaque surfaces
+    {"gearworks", "gearworks --view 25,8", {"30dB", "40dB", "1/255"}},
+    {"gearworks-turned", "gearworks --view 120,40 --time 1.5", {"35dB", "55dB", "4/255"}},
+    // each vertex with its own opacity
+    {"smoke", "smoke --view 25,8", {"30dB", "40dB", "1/255"}},
+    // media, for which the survey knows no bounds of packed formats
+    {"smoke-absorb", "smoke --blend absorb --view 80,-10", {"35dB", "50dB", "1/255"}},
+    // instances of one mesh, for two eyes
+    {"rings", "rings --view 40,30 --stereo 0.1", {"30dB", "45dB", "1/255"}},
+    // depths do not tell the order; and a budget that no picture of floats can keep
+    {"coplanar", "extreme-coplanar --view 0,0", {"30dB", "1/255", "199dB"}},
+};
+
+std::vector<std::string> words(std::string_view text) {
+    std::istringstream in{std::string(text)};
+    std::vector<std::string> result;
+    for (std::string word; in >> word;) result.push_back(word);
+    return result;
+}
+
+}  // namespace
+
+std::span<const GridView> grid_views() { return views; }
+
+FrameOptions frame_options(const GridView& view, const std::filesystem::path& meshes) {
+    std::vector<std::string> arguments = words(view.arguments);
+    if (is_of_mesh(view)) arguments.front() = (meshes / arguments.front()).string();
+    std::vector<const char*> pointers{"cellist-oit"};
+    for (const std::string& argument : arguments) pointers.push_back(argument.c_str());
+    FrameOptions options;
+    CLI::App app;
+    const FrameArguments frame(app, options);
+    (void)support::parse_command_line(app, static_cast<int>(pointers.size()), pointers.data());
+    frame.read(options);
+    return options;
+}
+
+bool is_of_mesh(const GridView& view) {
+    return find_scene(words(view.arguments).front()) == nullptr;
+}
+
+}  // namespace oit

@@ -1,0 +1,65 @@
+#include "grid_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "command_line.hpp"
+#include "frame_options.hpp"
+#include "image.hpp"
+#include "number_text.hpp"
+
+namespace oit {
+namespace {
+
+int read_side(const std::string& text) {
+    return static_cast<int>(support::read_number("--size", text, 1, 16384));
+}
+
+}  // namespace
+
+GridOptions parse_grid_options(int count, const char* const* arguments) {
+    GridOptions options;
+    std::string size = std::to_string(options.width) + "x" + std::to_string(options.height),
+                runs = std::to_string(options.runs), cost = shortest(options.cost), meshes, json;
+    CLI::App app{
+        "Draws ten scenes and views within three budgets each, as cellist-oit --budget does, and "
+        "looks for the cheapest setting that keeps the budget among all there are, by drawing all "
+        "of them and comparing them with a rendering in double precision.\n"
+        "A case is met if what --budget chose keeps the budget against that rendering, and costs "
+        "no "
+        "more than 1.1 times as much as the best; or if no setting keeps it, and --budget says so. "
+        "The exit code is 0 if all cases are met, and 1 otherwise.\n"
+        "PoCL on 2 cores takes less than 10 minutes, and as long again the first time, to build "
+        "the kernels.",
+        "cellist-budget-grid"};
+    const auto add = [&](const char* name, std::string& value, const char* what, const char* type) {
+        add_option(app, name, value, what, type);
+    };
+    add("--meshes", meshes, "has teapot.obj and dragon.ply, whose cases are left out without it",
+        "DIR");
+    add("--size", size, "image size in pixels", "WxH");
+    add("--filter", options.filter, "only the views whose names have this text in them", "TEXT");
+    add("--runs", runs, "timed frames of each setting, at least; more where it is close", "N");
+    add("--cost", cost, "of what was chosen, in costs of the best, at most", "RATIO");
+    add("--json", json, "write the figures to this file", "FILE");
+    add("--git", options.git, "the commit that the figures name", "HASH");
+    add("--device", options.device,
+        "index or part of the name of the device; else CELLIST_DEVICE, a GPU, or the first", "D");
+    if (const auto help = support::parse_command_line(app, count, arguments)) {
+        options.help = true;
+        options.help_text = *help;
+        return options;
+    }
+    const std::size_t x = size.find('x');
+    if (x == std::string::npos)
+        support::refuse("--size", size, "WIDTHxHEIGHT in pixels, such as 320x180");
+    options.width = read_side(size.substr(0, x));
+    options.height = read_side(size.substr(x + 1));
+    options.meshes = meshes;
+    options.runs = static_cast<std::uint32_t>(support::read_number("--runs", runs, 1, 10'000));
+    options.cost = read_between("--cost", cost, 1, 1e6, "a number from 1 to 1000000");
+    if (!json.empty()) support::check_image_path(json);
+    options.json = json;
+    return options;
+}
+
+}  // namespace oit

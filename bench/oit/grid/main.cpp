@@ -1,0 +1,108 @@
+// Does --budget choose well? Against all settings there are, on ten scenes and views.
+#include <algorithm>
+#include <iostream>
+#include <limits>
+#include <vector>
+
+#include <cellist/cellist.hpp>
+
+#include "cases.hpp"
+#include "command_line.hpp"
+#include "figures.hpp"
+#include "grid_options.hpp"
+#include "grid_report.hpp"
+#include "input_error.hpp"
+#include "keeper.hpp"
+#include "search.hpp"
+
+namespace {
+
+// Times what was chosen and what is best again, by turns.
+void time_both(oit::Search& search, const oit::Trial& chosen, const oit::Trial& best,
+               oit::GridCase& result) {
+    const oit::Trial* both[] = {&chosen, &best};
+    const std::vector<oit::FrameTimes> times = search.time_again(both);
+    result.chosen.times = times[0];
+    result.best->times = times[1];
+    if (&chosen != &best) result.cost = times[0].median_ms / times[1].median_ms;
+}
+
+oit::GridCase run_case(const cellist::Device& device, const oit::Frame& frame, oit::Search& search,
+                       const oit::GridView& view, std::string_view budget_text) {
+    oit::GridCase result{.name = std::string(view.name) + " " + std::string(budget_text),
+                         .budget = oit::parse_budget(budget_text)};
+    // As cellist-oit does.
+    const oit::Keeper keeper(device, frame, result.budget);
+    result.choice = keeper.choice();
+    result.chosen = {.setting = result.choice.setting,
+                     .errors = search.truth().errors_of(keeper.renderer().image())};
+    const oit::Trial* best = search.best(result.budget);
+    if (best) result.best = *best;
+    const oit::Trial* chosen = search.find(result.choice.setting);
+    if (best && chosen)
+        time_both(search, *chosen, *best, result);
+    else if (best)
+        result.cost = std::numeric_limits<double>::infinity();
+    return result;
+}
+
+oit::GridResult run_view(const cellist::Device& device, const oit::GridView& view,
+                         const oit::GridOptions& options) {
+    oit::FrameOptions drawn = oit::frame_options(view, options.meshes);
+    drawn.width = options.width;
+    drawn.height = options.height;
+    oit::Scene scene = oit::make_scene(drawn);
+    if (drawn.opaque_floor) oit::add_floor(scene);
+    const oit::Frame frame = oit::make_frame(scene, drawn);
+    oit::Search search(device, frame, options.runs);
+    oit::GridResult result{.view = &view,
+                           .fragments = search.truth().reference().fragments.size(),
+                           .most_layers = search.truth().reference().most_layers(),
+                           .pixels_ambiguous = search.truth().pixels_ambiguous(),
+                           .trials = search.trials()};
+    for (const std::string_view budget : view.budgets) {
+        result.cases.push_back(run_case(device, frame, search, view, budget));
+        print(result.cases.back(), options.cost, std::cout);
+        std::cout.flush();
+    }
+    return result;
+}
+
+// Whether all cases are met.
+bool run(const oit::GridOptions& options) {
+    const cellist::Device device = options.device.empty() ? cellist::Device::choose()
+                                                          : cellist::Device::choose(options.device);
+    std::cout << "cellist-budget-grid, " << options.width << 'x' << options.height << ", "
+              << device.info().name << " (driver " << device.info().driver << ")\n";
+    std::vector<oit::GridResult> results;
+    std::size_t cases = 0, met = 0;
+    for (const oit::GridView& view : oit::grid_views()) {
+        if (view.name.find(options.filter) == std::string_view::npos) continue;
+        if (options.meshes.empty() && is_of_mesh(view)) {
+            std::cout << "left out, for want of --meshes: " << view.name << ", "
+                      << view.budgets.size() << " cases\n";
+            continue;
+        }
+        results.push_back(run_view(device, view, options));
+        cases += results.back().cases.size();
+        met += static_cast<std::size_t>(std::ranges::count_if(
+            results.back().cases,
+            [&](const oit::GridCase& grid_case) { return grid_case.met(options.cost); }));
+    }
+    if (cases == 0) throw support::InputError("--filter " + options.filter + " leaves no case");
+    std::cout << met << " of " << cases << " cases met\n";
+    if (!options.json.empty())
+        oit::write_file(options.json, oit::dump(to_json(results, options, device), 2) + '\n');
+    return met == cases;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+    return support::run_program("cellist-budget-grid", [&] {
+        const oit::GridOptions options = oit::parse_grid_options(count, arguments);
+        if (!options.help) return run(options);
+        std::cout << options.help_text;
+        return true;
+    });
+}

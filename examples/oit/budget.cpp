@@ -1,0 +1,85 @@
+#include "budget.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "input_error.hpp"
+
+namespace oit {
+namespace {
+
+using support::InputError;
+
+// The whole text as a finite number, or nothing.
+std::optional<double> number(std::string_view text) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+        return {};
+    return value;
+}
+
+[[noreturn]] void refuse(std::string_view text, const std::string& why) {
+    throw InputError("--budget " + std::string(text) + ": " + why);
+}
+
+std::string formatted(const char* format, double value) {
+    char buffer[64];
+    std::snprintf(buffer, sizeof buffer, format, value);
+    return buffer;
+}
+
+// A part, such as 1/255, or a decimal.
+std::optional<double> fraction(std::string_view text) {
+    const std::size_t slash = text.find('/');
+    if (slash == std::string_view::npos) return number(text);
+    const auto numerator = number(text.substr(0, slash));
+    const auto denominator = number(text.substr(slash + 1));
+    if (!numerator || !denominator || *denominator == 0) return {};
+    return *numerator / *denominator;
+}
+
+}  // namespace
+
+double PictureError::psnr_db() const { return -10 * std::log10(mean_square); }
+
+bool Budget::met_by(const PictureError& error) const {
+    // False where the error is no number.
+    return kind == Kind::largest ? error.largest <= limit : error.psnr_db() >= limit;
+}
+
+bool Budget::better(const PictureError& a, const PictureError& b) const {
+    return kind == Kind::largest ? a.largest < b.largest : a.mean_square < b.mean_square;
+}
+
+std::string Budget::text_of(const PictureError& error) const {
+    if (kind == Kind::psnr) return formatted("%.1f dB", error.psnr_db());
+    return formatted(error.largest < 0.1 / 255 ? "%.4f/255" : "%.2f/255", 255 * error.largest);
+}
+
+std::string Budget::text() const {
+    if (kind == Kind::psnr) return formatted("%.6g", limit) + "dB";
+    return formatted("%.6g", 255 * limit) + "/255";
+}
+
+Budget parse_budget(std::string_view text) {
+    constexpr std::string_view expected =
+        "expected a PSNR such as 40dB, or a largest error such as 1/255 or 0.004";
+    constexpr double most_db = 200;
+    if (text.ends_with("dB")) {
+        const auto psnr = number(text.substr(0, text.size() - 2));
+        if (!psnr) refuse(text, std::string(expected));
+        if (!(*psnr > 0 && *psnr <= most_db))
+            refuse(text, "a PSNR lies above 0 dB, and at 200 dB at most");
+        return {Budget::Kind::psnr, *psnr};
+    }
+    const auto largest = fraction(text);
+    if (!largest) refuse(text, std::string(expected));
+    if (*largest >= 1) refuse(text, "no error is larger than 1; a PSNR is written as 40dB");
+    if (!(*largest > 0)) refuse(text, "an error above 0: no picture of floats is without");
+    return {Budget::Kind::largest, *largest};
+}
+
+}  // namespace oit

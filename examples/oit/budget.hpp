@@ -1,0 +1,53 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace oit {
+
+/// How far a picture is from the truth: errors of sRGB-encoded channels from 0 to 1.
+struct PictureError {
+    double largest = 0;      ///< of any channel of any pixel
+    double mean_square = 0;  ///< over all channels of all pixels
+
+    /// Infinite where there is no error.
+    [[nodiscard]] double psnr_db() const;
+};
+
+/// How far a picture may be from the truth.
+///
+///     cellist-oit dragon.ply --budget 40dB      PSNR of at least 40 dB
+///     cellist-oit dragon.ply --budget 1/255     no channel off by more than 1/255; also 0.004
+///
+/// The truth is the frame in real numbers: all layers, each with its own depth. Where two layers lie so
+/// close that float depths do not tell which is in front, neither order is wrong: see Survey.
+///
+/// 1. Survey draws the frame once with all layers in float, and finds for each pixel how far that can
+///    be from the truth, and what of it packing, fewer layers or an early end would change.
+/// 2. Chooser goes through settings_for(frame). A setting whose error is known from the survey to be
+///    too large is not drawn. The others are, cheapest first, against each other: those that a few
+///    draws show to be slower go, and of the rest those go that are over budget. The error of a
+///    setting is the bound that its method has for it (MethodInfo::bound) or, where that is too wide
+///    or there is none, its difference from the survey's picture plus that picture's own bound. So
+///    what is promised holds against the truth, and no reference on the CPU is needed.
+/// 3. Keeper draws frames with the setting that was chosen, and surveys again when time or camera
+///    change. A frame over budget is drawn again with another setting.
+struct Budget {
+    enum class Kind { largest, psnr };
+    Kind kind = Kind::largest;
+    double limit = 0;  ///< largest error, or dB
+
+    [[nodiscard]] bool met_by(const PictureError& error) const;
+    /// The error in the budget's terms: "0.71/255" or "41.3 dB".
+    [[nodiscard]] std::string text_of(const PictureError& error) const;
+    /// True where `a` is nearer to the truth.
+    [[nodiscard]] bool better(const PictureError& a, const PictureError& b) const;
+    /// As on the command line.
+    [[nodiscard]] std::string text() const;
+};
+
+/// Reads "40dB", "1/255" or "0.004". Throws InputError at anything else, and at limits that every
+/// picture meets or none can.
+[[nodiscard]] Budget parse_budget(std::string_view text);
+
+}  // namespace oit

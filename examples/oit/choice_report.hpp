@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <iosfwd>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "budget.hpp"
+#include "keeper.hpp"
+
+namespace oit {
+
+/// How a budget was kept over the frames of a run.
+class KeptBudget {
+public:
+    void add(const Keeper::Drawn& drawn, double time, const Budget& budget);
+
+    /// No frame that was checked is over the budget.
+    [[nodiscard]] bool met() const { return over_.empty(); }
+    [[nodiscard]] std::uint32_t frames() const { return frames_; }
+    [[nodiscard]] std::uint32_t checked() const { return checked_; }
+    [[nodiscard]] std::uint32_t chosen_again() const { return chosen_again_; }
+    /// Times of the frames that no setting brings within the budget.
+    [[nodiscard]] const std::vector<double>& over() const { return over_; }
+    /// The errors of the least accurate frame that was checked.
+    [[nodiscard]] const PictureErrors& worst() const { return worst_; }
+
+private:
+    std::uint32_t frames_ = 0, checked_ = 0, chosen_again_ = 0;
+    std::vector<double> over_;
+    PictureErrors worst_;
+};
+
+/// What was chosen, and why: the end of a screen for people.
+void print(const Choice& choice, const Budget& budget, const KeptBudget& kept, std::ostream& out);
+
+/// The same, and all candidates.
+[[nodiscard]] nlohmann::ordered_json json_of(const Choice& choice, const Budget& budget,
+                                             const KeptBudget& kept);
+
+}  // namespace oit

@@ -1,0 +1,8 @@
+// How many fragments there are in each pixel.
+#define OIT_TARGET volatile global uint* counts
+#define OIT_TARGET_PASS counts
+
+static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitPlace* place,
+                             const OitFragment* fragment) {
+    atomic_inc(&counts[place->pixel]);
+}

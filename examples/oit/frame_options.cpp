@@ -1,0 +1,268 @@
+#include "frame_options.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+#include "command_line.hpp"
+#include "input_error.hpp"
+#include "mesh.hpp"
+#include "method.hpp"
+#include "number_text.hpp"
+#include "raster/rasteriser.hpp"
+#include "scenes.hpp"
+
+namespace oit {
+namespace {
+
+using support::InputError;
+using support::refuse;
+
+// The whole text as a number, or nothing.
+template <class T>
+std::optional<T> parse(std::string_view text) {
+    T value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) return {};
+    return value;
+}
+
+void read_size(const std::string& text, FrameOptions& options) {
+    const std::string expected =
+        "--size " + text + ": expected WIDTHxHEIGHT in pixels, such as 1280x720";
+    const std::size_t x = text.find('x');
+    if (x == std::string::npos) throw InputError(expected);
+    const auto width = parse<long long>(std::string_view(text).substr(0, x));
+    const auto height = parse<long long>(std::string_view(text).substr(x + 1));
+    if (!width || !height) throw InputError(expected);
+    if (*width < 1 || *height < 1)
+        throw InputError("--size " + text + ": each side has at least 1 pixel");
+    constexpr long long int_max = 0x7FFFFFFF;
+    if (*width > int_max || *height > int_max)
+        throw InputError("--size " + text + ": each side has at most " +
+                         std::to_string(RASTER_SIDE_MAX) + " pixels");
+    options.width = static_cast<int>(*width);
+    options.height = static_cast<int>(*height);
+}
+
+void read_view(const std::string& text, FrameOptions& options) {
+    const std::size_t comma = text.find(',');
+    const auto azimuth = parse<double>(std::string_view(text).substr(0, comma));
+    const auto elevation = comma == std::string::npos
+                               ? std::nullopt
+                               : parse<double>(std::string_view(text).substr(comma + 1));
+    if (!azimuth || !elevation || !std::isfinite(*azimuth) || !std::isfinite(*elevation))
+        refuse("--view", text, "AZIMUTH,ELEVATION in degrees, such as 25,8");
+    if (std::abs(*elevation) > 90)
+        throw InputError("--view " + text + ": the elevation lies between -90 and 90");
+    options.orbit = {.azimuth_degrees = std::fmod(*azimuth, 360.0),
+                     .elevation_degrees = *elevation};
+}
+
+void read_samples(const std::string& text, FrameOptions& options) {
+    const auto samples = parse<int>(text);
+    if (!samples || (*samples != 1 && *samples != 2 && *samples != 4 && *samples != 8))
+        refuse("--samples", text, "1, 2, 4 or 8");
+    options.quality.samples = *samples;
+}
+
+void read_resolve(const std::string& text, FrameOptions& options) {
+    if (text != "pixel" && text != "sample") refuse("--resolve", text, "pixel or sample");
+    options.quality.resolve = text == "pixel" ? Resolve::per_pixel : Resolve::per_sample;
+}
+
+void read_depth_scale(const std::string& text, FrameOptions& options) {
+    if (text != "linear" && text != "reversed") refuse("--depth-scale", text, "linear or reversed");
+    options.quality.depth_scale = text == "linear" ? DepthScale::linear : DepthScale::reversed;
+}
+
+constexpr std::pair<std::string_view, Blend> blend_kinds[] = {
+    {"over", Blend::over},
+    {"additive", Blend::additive},
+    {"multiplicative", Blend::multiplicative},
+    {"absorb", Blend::absorb},
+};
+
+std::string blend_text(const FrameOptions& options) {
+    if (options.blend_function) return options.blend_function->file_name;
+    for (const auto& [name, blend] : blend_kinds)
+        if (options.blend == blend) return std::string(name);
+    return {};
+}
+
+// A kind of blending, or a file with a function.
+void read_blend(const std::string& text, FrameOptions& options) {
+    if (text.empty()) return;
+    for (const auto& [name, blend] : blend_kinds)
+        if (text == name) {
+            options.blend = blend;
+            return;
+        }
+    std::ifstream file(text, std::ios::binary);
+    std::error_code error;
+    if (!file || std::filesystem::is_directory(text, error))
+        refuse("--blend", text,
+               "over, additive, multiplicative, absorb, or a file with an OpenCL C function");
+    options.blend = Blend::user;
+    options.blend_function = {{std::istreambuf_iterator<char>(file), {}}, text};
+}
+
+void set_blend(Scene& scene, Blend blend) {
+    for (Material& material : scene.materials)
+        if (material.blend != static_cast<cl_uint>(Blend::opaque))
+            material.blend = static_cast<cl_uint>(blend);
+}
+
+// The largest buffers of a frame: image and opaque colour with 16 bytes a sample.
+void check_size(const FrameOptions& options, const cellist::Device& device) {
+    const std::string size =
+        "--size " + std::to_string(options.width) + "x" + std::to_string(options.height);
+    const std::uint64_t bytes = 16 * static_cast<std::uint64_t>(options.width) *
+                                static_cast<std::uint64_t>(options.height) *
+                                static_cast<std::uint64_t>(options.quality.samples) *
+                                (options.eye_separation ? 2 : 1);
+    const std::uint64_t limit = device.info().max_allocation_bytes;
+    if (bytes > limit)
+        throw InputError(size + " needs an image of " + std::to_string(bytes) +
+                         " bytes, this device allocates at most " + std::to_string(limit) +
+                         " at once");
+    if (options.width > RASTER_SIDE_MAX || options.height > RASTER_SIDE_MAX)
+        throw InputError(size + ": each side has at most " + std::to_string(RASTER_SIDE_MAX) +
+                         " pixels");
+}
+
+}  // namespace
+
+void add_option(CLI::App& app, const char* name, std::string& value, const char* what,
+                const char* type) {
+    CLI::Option* option = app.add_option(name, value, what)->type_name(type);
+    if (!value.empty()) option->capture_default_str();
+}
+
+double read_between(const std::string& option, const std::string& text, double least, double most,
+                    const std::string& expected) {
+    const auto value = parse<double>(text);
+    if (!value || !(*value >= least && *value <= most)) refuse(option, text, expected);
+    return *value;
+}
+
+std::string help_on_tables() {
+    std::string text = "Methods:\n";
+    const auto line = [&](std::string_view name, std::string_view summary) {
+        text += "  " + std::string(name) +
+                std::string(name.size() < 24 ? 24 - name.size() : 1, ' ') + std::string(summary) +
+                "\n";
+    };
+    for (const MethodInfo& info : methods()) {
+        std::string name(info.name);
+        if (!info.sizes.empty())
+            name += "[:" + std::to_string(info.sizes.front()) + "..." +
+                    std::to_string(info.sizes.back()) + "]";
+        line(name, info.summary);
+    }
+    text += "Scenes:\n";
+    for (const SceneInfo& info : scenes()) line(info.name, info.summary);
+    return text;
+}
+
+FrameArguments::FrameArguments(CLI::App& app, const FrameOptions& options)
+    : scene_(options.scene),
+      size_(std::to_string(options.width) + "x" + std::to_string(options.height)),
+      alpha_(shortest(options.alpha)),
+      blend_(blend_text(options)),
+      samples_(std::to_string(options.quality.samples)),
+      resolve_(options.quality.resolve == Resolve::per_pixel ? "pixel" : "sample"),
+      depth_scale_(options.quality.depth_scale == DepthScale::linear ? "linear" : "reversed"),
+      view_(shortest(options.orbit.azimuth_degrees) + "," +
+            shortest(options.orbit.elevation_degrees)),
+      eyes_(options.eye_separation ? shortest(*options.eye_separation) : ""),
+      time_(shortest(options.time)),
+      device_(options.device),
+      depth_range_(options.quality.depth_range),
+      opaque_floor_(options.opaque_floor) {
+    const auto add = [&](const char* name, std::string& value, const char* what, const char* type) {
+        add_option(app, name, value, what, type);
+    };
+    add("scene", scene_, "mesh that Assimp reads (OBJ, PLY, STL, glTF, ...), or a scene",
+        "MESH|SCENE");
+    add("--size", size_, "image size in pixels", "WxH");
+    add("--alpha", alpha_, "opacity of the surfaces, 0 to 1", "A");
+    add("--blend", blend_,
+        "how surfaces blend: over, additive, multiplicative, absorb, or a file with a function",
+        "KIND|FILE");
+    add("--samples", samples_, "samples of a pixel: 1, 2, 4 or 8", "N");
+    add("--resolve", resolve_, "where samples are blended: pixel or sample", "WHERE");
+    app.add_flag("--depth-range", depth_range_,
+                 "blend surfaces that meet within a pixel by their least and greatest depths");
+    add("--depth-scale", depth_scale_, "what 16 and 24 bits of depth divide: linear or reversed",
+        "S");
+    add("--view", view_, "direction to look from, in degrees", "AZIMUTH,ELEVATION");
+    add("--stereo", eyes_, "two eyes, this far apart; the scene has radius 1", "DISTANCE");
+    add("--time", time_, "of an animated scene, in seconds", "T");
+    app.add_flag("--opaque-floor", opaque_floor_, "stand the scene on an opaque floor");
+    add("--device", device_,
+        "index or part of the name of the device; else CELLIST_DEVICE, a GPU, or the first", "D");
+}
+
+void FrameArguments::read(FrameOptions& options) const {
+    if (scene_.empty()) throw InputError("no mesh or scene given (see --help)");
+    options.scene = scene_;
+    options.device = device_;
+    options.opaque_floor = opaque_floor_;
+    read_size(size_, options);
+    options.alpha =
+        static_cast<float>(read_between("--alpha", alpha_, 0, 1, "a number from 0 to 1"));
+    read_blend(blend_, options);
+    read_samples(samples_, options);
+    read_resolve(resolve_, options);
+    read_depth_scale(depth_scale_, options);
+    read_view(view_, options);
+    if (!eyes_.empty())
+        options.eye_separation = read_between("--stereo", eyes_, 0, 1, "a distance from 0 to 1");
+    options.time = read_between("--time", time_, -1e6, 1e6, "seconds from -1000000 to 1000000");
+    options.quality.depth_range = depth_range_;
+    if (depth_range_ && options.quality.samples == 1)
+        throw InputError("--depth-range needs several samples: add --samples 2, 4 or 8");
+}
+
+cellist::Device choose_device(const FrameOptions& options) {
+    cellist::Device device = options.device.empty() ? cellist::Device::choose()
+                                                    : cellist::Device::choose(options.device);
+    check_size(options, device);
+    return device;
+}
+
+Scene make_scene(const FrameOptions& options) {
+    Scene scene;
+    if (const SceneInfo* info = find_scene(options.scene)) {
+        scene = info->make(options.alpha);
+    } else {
+        support::Mesh mesh = support::load_mesh(options.scene);
+        support::fit_to_unit_sphere(mesh);
+        scene = scene_of(std::move(mesh), options.alpha);
+    }
+    if (options.blend) set_blend(scene, *options.blend);
+    return scene;
+}
+
+std::vector<raster::View> make_views(const FrameOptions& options) {
+    if (options.eye_separation)
+        return support::frame_unit_sphere(options.orbit, options.width, options.height,
+                                          *options.eye_separation);
+    return {support::frame_unit_sphere(options.orbit, options.width, options.height)};
+}
+
+Frame make_frame(const Scene& scene, const FrameOptions& options) {
+    return {.scene = scene,
+            .views = make_views(options),
+            .time = options.time,
+            .quality = options.quality,
+            .blend_function = options.blend_function};
+}
+
+}  // namespace oit

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <cellist/cellist.hpp>
+
+#include "camera.hpp"
+#include "frame.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace oit {
+
+/// What is drawn, from where, and on which device: the options that all programs which draw have.
+struct FrameOptions {
+    std::string scene;  ///< a mesh file, or the name of a computed scene
+    int width = 1280;
+    int height = 720;
+    float alpha = 0.35F;
+    support::Orbit orbit{.azimuth_degrees = 25, .elevation_degrees = 8};
+    std::optional<double> eye_separation = {};  ///< for two eyes
+    double time = 0;                            ///< of the scene, in seconds
+    bool opaque_floor = false;
+    Quality quality = {};
+    std::optional<Blend> blend = {};  ///< of all transparent surfaces; else the scene decides
+    std::optional<BlendFunction> blend_function = {};
+    std::string device = {};
+};
+
+/// The texts of these options on a command line.
+class FrameArguments {
+public:
+    /// Adds the options to `app`, `options` being their defaults.
+    FrameArguments(CLI::App& app, const FrameOptions& options);
+
+    /// Reads and checks what has been parsed, and the file of a blend function. Throws InputError
+    /// where an argument cannot be used.
+    void read(FrameOptions& options) const;
+
+private:
+    std::string scene_, size_, alpha_, blend_, samples_, resolve_, depth_scale_, view_, eyes_,
+        time_, device_;
+    bool depth_range_;
+    bool opaque_floor_;
+};
+
+/// Adds an option with a text to a command line; what it has is its default.
+void add_option(CLI::App& app, const char* name, std::string& value, const char* what,
+                const char* type);
+
+/// The text of an option as a number. Throws InputError unless least <= number <= most.
+[[nodiscard]] double read_between(const std::string& option, const std::string& text, double least,
+                                  double most, const std::string& expected);
+
+/// For the end of a help text: all methods and scenes.
+[[nodiscard]] std::string help_on_tables();
+
+/// The device that the options ask for, or Device::choose(). Throws InputError where it cannot hold an
+/// image of their size.
+[[nodiscard]] cellist::Device choose_device(const FrameOptions& options);
+
+/// The scene without a floor, from a file or computed. Throws InputError where a file holds none.
+[[nodiscard]] Scene make_scene(const FrameOptions& options);
+
+/// What the eyes see.
+[[nodiscard]] std::vector<raster::View> make_views(const FrameOptions& options);
+
+/// The frame of a scene, which must outlive it.
+[[nodiscard]] Frame make_frame(const Scene& scene, const FrameOptions& options);
+
+}  // namespace oit

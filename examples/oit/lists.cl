@@ -1,0 +1,60 @@
+// The methods that keep every fragment in a list of its pixel, whatever the storage (Yang et al. 2010,
+// section 4.1). A container of shape width x height, or width x height x eyes.
+
+#ifdef OIT_PASS
+#define OIT_TARGET CELLIST_LISTS(OIT_NODE, fragments)
+#define OIT_TARGET_PASS CELLIST_PASS(fragments)
+
+static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitPlace* place,
+                             const OitFragment* fragment) {
+    cellist_insert(fragments, cellist_cell3(fragments, place->x, place->y, place->eye),
+                   oit_pack(frame, fragment));
+}
+
+#else
+
+// Blends each pixel's fragments front to back over what is behind them.
+//
+// The lists are sorted by key. With OIT_NEAREST=K they need not be, and the K nearest fragments of
+// each are blended; OIT_LAYERS=K stops after the first K of a sorted list. With OIT_SORTED=N they need
+// not be sorted either, and *longer becomes 1 where one has N fragments or more.
+#ifdef OIT_SORTED
+#define OIT_NEAREST OIT_SORTED
+#define OIT_LONGER , global uint* longer
+#else
+#define OIT_LONGER
+#endif
+
+kernel void oit_resolve_lists(CELLIST_LISTS(OIT_NODE, fragments) OIT_LONGER, OIT_SCREEN) {
+    OitPixel pixel;
+    if (!oit_pixel(OIT_SCREEN_PASS, &pixel)) return;
+    const uint cell = cellist_cell3(fragments, pixel.x, pixel.y, pixel.eye);
+    OitLights lights = oit_lights();
+#ifdef OIT_NEAREST
+    struct OIT_NODE nearest[OIT_NEAREST];
+    uint found = cellist_nearest(fragments, cell, key, OIT_NEAREST, nearest);
+#ifdef OIT_SORTED
+    if (found == OIT_SORTED) *longer = 1;
+#ifdef OIT_LAYERS
+    found = min(found, (uint)OIT_LAYERS);
+#endif
+#endif
+    for (uint i = 0; i < found && !oit_done(&lights, &pixel); ++i) {
+        const OitFragment fragment = oit_unpack(&pixel.frame, nearest[i]);
+        oit_add(&lights, &pixel, &fragment);
+    }
+#else
+    uint layer = 0;
+    cellist_for_each(fragments, cell, node) {
+#ifdef OIT_LAYERS
+        if (layer++ == OIT_LAYERS) break;
+#endif
+        if (oit_done(&lights, &pixel)) break;
+        const OitFragment fragment = oit_unpack(&pixel.frame, cellist_get(fragments, node));
+        oit_add(&lights, &pixel, &fragment);
+    }
+#endif
+    oit_write(OIT_SCREEN_PASS, &pixel, &lights);
+}
+
+#endif

@@ -1,0 +1,32 @@
+// How much light reaches a depth is kept as a function of a few steps.
+#include <array>
+
+#include "accumulating.hpp"
+#include "list_method.hpp"
+#include "oit_kernels.hpp"
+
+namespace oit {
+namespace {
+
+constexpr std::array sizes{2U, 4U, 8U, 16U, 32U};
+constexpr std::uint32_t default_steps = 8;
+
+std::unique_ptr<Method> make(FragmentSource& source) {
+    const std::uint32_t steps = source.frame().quality.size.value_or(default_steps);
+    return make_list_method(source, {.storage = cellist::Storage::linked},
+                            ListReader{"#define OIT_STEPS " + std::to_string(steps) + "\n" +
+                                           std::string(kernels::adaptive_cl),
+                                       "adaptive.cl", "oit_resolve_adaptive"});
+}
+
+const MethodRegistration adaptive(
+    {.name = "adaptive",
+     .summary = "transmittance as a function of 8 or other steps (Salvi et al. 2011)",
+     .position = 110,
+     .exact = false,
+     .sizes = sizes,
+     .refusal = accumulating_refusal,
+     .make = make});
+
+}  // namespace
+}  // namespace oit

@@ -1,0 +1,43 @@
+// The nearest layers of each pixel in slots, and nothing of the others: as many as the size
+// says, Quality::layers, or 8.
+#include <array>
+
+#include "list_method.hpp"
+
+namespace oit {
+namespace {
+
+constexpr std::array sizes{1U, 2U, 4U, 8U, 16U, 32U, 64U};
+constexpr std::uint32_t default_slots = 8;
+
+std::uint32_t slots_of(const Quality& quality) {
+    return quality.size.value_or(quality.layers.value_or(default_slots));
+}
+
+std::unique_ptr<Method> make(FragmentSource& source) {
+    return make_list_method(source, {.storage = cellist::Storage::fixed,
+                                     .overflow = cellist::Overflow::keep_nearest,
+                                     .slots = slots_of(source.frame().quality),
+                                     .nearest_by = "key"});
+}
+
+// Its slots hold the nearest layers.
+std::optional<PictureError> bound(const SceneMeasure& scene, const Quality& quality) {
+    Quality nearest = quality;
+    nearest.layers = slots_of(quality);
+    return bound_of_layers(scene, nearest);
+}
+
+const MethodRegistration kbuffer(
+    {.name = "kbuffer",
+     .summary = "the 8 nearest layers, or as many as asked for (Bavoil et al. 2007)",
+     .position = 70,
+     .exact = false,
+     .sizes = sizes,
+     .refusal = refuses_nothing,
+     .make = make,
+     .bound = bound,
+     .passes = two_passes});
+
+}  // namespace
+}  // namespace oit

@@ -1,0 +1,52 @@
+// How much light reaches a depth is found from four moments of the absorbance in front.
+#include "accumulating.hpp"
+#include "oit_kernels.hpp"
+
+namespace oit {
+namespace {
+
+std::string text(const std::string& defines = {}) {
+    return defines + accumulating_text(kernels::moments_cl);
+}
+
+class Moments : public Method {
+public:
+    explicit Moments(FragmentSource& source)
+        : source_(source),
+          sum_moments_(source.pass(text("#define OIT_MOMENTS\n"), "moments.cl")),
+          add_(source.pass(text(), "moments.cl")),
+          resolve_(source.screen_kernel(text(), "moments.cl", "oit_resolve_moments")),
+          moments_(source.device(), 5 * source.samples()),
+          sums_(source.device(), 4 * source.samples()) {}
+
+    void store() override {
+        moments_.fill(0);
+        sums_.fill(0);
+        source_.draw(sum_moments_, moments_);
+        source_.draw(add_, moments_, sums_);
+    }
+    void resolve() override { source_.run_on_screen(resolve_, moments_, sums_); }
+    [[nodiscard]] std::uint64_t device_bytes() const override {
+        return (moments_.size() + sums_.size()) * sizeof(cl_long);
+    }
+
+private:
+    FragmentSource& source_;
+    raster::Pass sum_moments_;
+    raster::Pass add_;
+    cellist::Kernel resolve_;
+    cellist::Buffer<cl_long> moments_;
+    cellist::Buffer<cl_long> sums_;
+};
+
+const MethodRegistration moments(
+    {.name = "moments",
+     .summary = "transmittance from four moments of depth (Muenstermann et al. 2018)",
+     .position = 100,
+     .exact = false,
+     .refusal = accumulating_refusal,
+     .make = make_accumulating<Moments>,
+     .passes = two_passes});
+
+}  // namespace
+}  // namespace oit

@@ -1,0 +1,51 @@
+// Depth peeling. A pixel has
+//   current  key of the layer that this pass takes; OIT_FIRST_KEY at the start, OIT_LAST_KEY at the end
+//   next     least key behind it
+//   nodes    the layer that was taken
+//   state    what has been blended
+
+#ifdef OIT_PASS
+#define OIT_TARGET global const ulong *current, volatile global ulong *next, global uint *nodes
+#define OIT_TARGET_PASS current, next, nodes
+
+static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitPlace* place,
+                             const OitFragment* fragment) {
+    const ulong key = oit_peeling_key(place, fragment);
+    const ulong now = current[place->pixel];
+    if (key == now)
+        oit_keep(nodes, place->pixel, frame, fragment);
+    else if (key > now)
+        atom_min(&next[place->pixel], key);
+}
+
+#else
+
+// Blends the layer that was taken, and goes on to the next. `left` is set where there is one.
+kernel void oit_peel(global ulong* current, global ulong* next, global const uint* nodes,
+                     global float* state, global uint* left, OIT_SCREEN) {
+    OitPixel pixel;
+    if (!oit_pixel(OIT_SCREEN_PASS, &pixel)) return;
+    const ulong now = current[pixel.pixel];
+    if (now == OIT_LAST_KEY) return;
+    OitLights lights;
+    if (now == OIT_FIRST_KEY) {
+        lights = oit_lights();
+    } else {
+        lights = oit_load(state, &pixel);
+        const OitFragment fragment = oit_kept(nodes, pixel.pixel, &pixel.frame);
+        oit_add(&lights, &pixel, &fragment);
+    }
+    oit_save(state, &pixel, &lights);
+    const ulong then = oit_done(&lights, &pixel) ? OIT_LAST_KEY : next[pixel.pixel];
+    current[pixel.pixel] = then;
+    next[pixel.pixel] = OIT_LAST_KEY;
+    if (then != OIT_LAST_KEY) *left = 1;
+}
+
+kernel void oit_finish_peeling(global const float* state, OIT_SCREEN) {
+    OitPixel pixel;
+    if (!oit_pixel(OIT_SCREEN_PASS, &pixel)) return;
+    OitLights lights = oit_load(state, &pixel);
+    oit_write(OIT_SCREEN_PASS, &pixel, &lights);
+}
+#endif

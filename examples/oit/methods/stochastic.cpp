@@ -1,0 +1,66 @@
+// Fragments hide each other at random, in a number of trials.
+#include <array>
+#include <bit>
+#include <limits>
+
+#include "accumulating.hpp"
+#include "oit_kernels.hpp"
+
+namespace oit {
+namespace {
+
+constexpr std::array sizes{2U, 4U, 8U, 16U, 32U, 64U};
+constexpr std::uint32_t default_trials = 8;
+constexpr cl_uint infinity_bits = std::bit_cast<cl_uint>(std::numeric_limits<cl_float>::infinity());
+
+std::uint32_t trials_of(const FragmentSource& source) {
+    return source.frame().quality.size.value_or(default_trials);
+}
+
+std::string text(const FragmentSource& source, const std::string& defines = {}) {
+    return defines + "#define OIT_TRIALS " + std::to_string(trials_of(source)) + "\n" +
+           accumulating_text(kernels::stochastic_cl);
+}
+
+class Stochastic : public Method {
+public:
+    explicit Stochastic(FragmentSource& source)
+        : source_(source),
+          hide_(source.pass(text(source, "#define OIT_HIDE\n"), "stochastic.cl")),
+          add_(source.pass(text(source), "stochastic.cl")),
+          resolve_(source.screen_kernel(text(source), "stochastic.cl", "oit_resolve_stochastic")),
+          depths_(source.device(), trials_of(source) * source.samples()),
+          sums_(source.device(), 5 * source.samples()) {}
+
+    void store() override {
+        depths_.fill(infinity_bits);
+        sums_.fill(0);
+        source_.draw(hide_, depths_);
+        source_.draw(add_, depths_, sums_);
+    }
+    void resolve() override { source_.run_on_screen(resolve_, sums_); }
+    [[nodiscard]] std::uint64_t device_bytes() const override {
+        return depths_.size() * sizeof(cl_uint) + sums_.size() * sizeof(cl_long);
+    }
+
+private:
+    FragmentSource& source_;
+    raster::Pass hide_;
+    raster::Pass add_;
+    cellist::Kernel resolve_;
+    cellist::Buffer<cl_uint> depths_;
+    cellist::Buffer<cl_long> sums_;
+};
+
+const MethodRegistration stochastic(
+    {.name = "stochastic",
+     .summary = "8 or other random trials of which fragments hide others (Enderton et al. 2010)",
+     .position = 90,
+     .exact = false,
+     .sizes = sizes,
+     .refusal = accumulating_refusal,
+     .make = make_accumulating<Stochastic>,
+     .passes = two_passes});
+
+}  // namespace
+}  // namespace oit

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "frame.hpp"
+#include "method.hpp"
+
+namespace oit {
+
+/// A method, and what is given up for speed: one point of the trade between them.
+struct Setting {
+    const MethodInfo* method;
+    Quality quality;
+};
+
+/// "linked", or "adaptive:8" where the size is not left to the method.
+[[nodiscard]] std::string method_text(const Setting& setting);
+
+/// The options of cellist-oit that give a setting: "--method linked --layers 8".
+[[nodiscard]] std::string text(const Setting& setting);
+
+/// All layers in nodes of floats with the method `linked`: what other settings are a trade of.
+/// Samples, resolve, ranges and scale of depth are those of `quality`.
+[[nodiscard]] Setting exact_setting(const Quality& quality);
+
+/// The settings worth comparing for a frame, those that a method refuses left out. Samples, resolve,
+/// ranges and scale of depth are those of the frame. Exact methods come in each node format; those
+/// that cut also with 1, 2, 4 ... 64 nearest layers, as long as that is fewer than `most_layers`,
+/// the most in any pixel, and with early ends; approximations in each of their sizes.
+[[nodiscard]] std::vector<Setting> settings_for(const Frame& frame, std::uint64_t most_layers);
+
+/// The frame that a setting draws instead of this one.
+[[nodiscard]] Frame with_setting(const Frame& frame, const Setting& setting);
+
+}  // namespace oit

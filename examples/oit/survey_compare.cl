@@ -1,0 +1,18 @@
+// How far a picture is from the survey's, and from the truth at most. figures: see figures.clh; claims
+// are those errors without and with what depends on an order that float depths do not tell.
+//   other        the picture
+//   uncertainty  see survey.cl
+kernel void oit_compare(global const float4* other, global const float4* uncertainty,
+                        global float* figures, OIT_SCREEN) {
+    local float shared[OIT_GROUP * OIT_FIGURES];
+    OitFigures own = oit_no_figures();
+    OitPixel pixel;
+    if (oit_pixel(OIT_SCREEN_PASS, &pixel)) {
+        const float3 is = other[pixel.pixel].xyz, exact = image[pixel.pixel].xyz;
+        const float4 uncertain = uncertainty[pixel.pixel];
+        const float3 error = fabs(oit_srgb3(is) - oit_srgb3(exact)) + uncertain.xyz;
+        oit_claim(&own, 0, error);
+        oit_claim(&own, 1, error + uncertain.w);
+    }
+    oit_write_figures(shared, figures, &own);
+}

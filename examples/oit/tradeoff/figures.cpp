@@ -1,0 +1,215 @@
+#include "figures.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <iomanip>
+#include <ostream>
+#include <sstream>
+#include <string>
+
+#include "input_error.hpp"
+#include "number_text.hpp"
+
+namespace oit {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string decibels(double psnr_db) {
+    return std::isfinite(psnr_db) ? fixed(psnr_db, 1) : "equal";
+}
+
+void print_settings(const Sweep& sweep, std::ostream& out) {
+    const std::vector<bool> front = pareto_front(sweep.measurements);
+    out << "\n   " << std::setw(9) << "ms" << std::setw(9) << "MB" << std::setw(9) << "PSNR dB"
+        << std::setw(9) << "SSIM" << std::setw(11) << "error/255"
+        << "  setting\n";
+    for (std::size_t i = 0; i < sweep.measurements.size(); ++i) {
+        const Measurement& m = sweep.measurements[i];
+        out << (front[i] ? " * " : "   ");
+        if (m.drawn())
+            out << std::setw(9) << fixed(m.milliseconds, 2) << std::setw(9) << megabytes(m.bytes)
+                << std::setw(9) << decibels(m.comparison.psnr_db) << std::setw(9)
+                << fixed(m.comparison.ssim, 5) << std::setw(11)
+                << fixed(255 * m.comparison.max_abs_error, 3) << "  " << text(m.setting) << '\n';
+        else
+            out << std::setw(9) << "-" << std::setw(40) << ""
+                << "  " << text(m.setting) << ": " << m.failure << '\n';
+    }
+    out << " * nothing here is both as fast and as accurate; error: the largest of any channel\n";
+}
+
+void print_fewer_layers(const Sweep& sweep, std::ostream& out) {
+    const std::vector<Relation> relations = fewer_layers(sweep);
+    if (relations.empty()) return;
+    out << "\nNearest layers against all " << sweep.most_layers
+        << "\n     layers  speed-up  PSNR dB\n";
+    for (const auto& [m, factor] : relations)
+        out << std::setw(11) << *m->setting.quality.layers << std::setw(10) << fixed(factor, 2)
+            << std::setw(9) << decibels(m->comparison.psnr_db) << '\n';
+}
+
+void print_exact_methods(const Sweep& sweep, std::ostream& out) {
+    const std::vector<Relation> relations = exact_methods(sweep);
+    if (relations.size() < 2) return;
+    out << "\nExact methods against linked, nodes of floats\n         ms  times as long\n";
+    for (const auto& [m, factor] : relations)
+        out << std::setw(11) << fixed(m->milliseconds, 2) << std::setw(15) << fixed(factor, 2)
+            << "  " << m->setting.method->name << '\n';
+}
+
+ordered_json finite_or_null(double value) {
+    return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+}
+
+ordered_json or_null(const std::optional<std::uint32_t>& value) {
+    return value ? ordered_json(*value) : ordered_json(nullptr);
+}
+
+// The number that people read for a float: 0.35, and not what is added to the digits of a double.
+double as_read(float value) {
+    std::ostringstream text;
+    text << value;
+    return std::stod(text.str());
+}
+
+ordered_json to_json(const Measurement& m, bool on_front) {
+    const Quality& quality = m.setting.quality;
+    ordered_json json{{"options", text(m.setting)},        {"method", m.setting.method->name},
+                      {"exact", m.setting.method->exact},  {"size", or_null(quality.size)},
+                      {"layers", or_null(quality.layers)}, {"epsilon", as_read(quality.epsilon)},
+                      {"format", name_of(quality.format)}};
+    if (!m.drawn()) {
+        json["failure"] = m.failure;
+        return json;
+    }
+    const Comparison& c = m.comparison;
+    json["ms"] = m.milliseconds;
+    json["fastest_ms"] = m.fastest;
+    json["runs"] = m.runs;
+    json["bytes"] = m.bytes;
+    json["psnr_db"] = finite_or_null(c.psnr_db);
+    json["ssim"] = c.ssim;
+    json["max_abs_error"] = c.max_abs_error;
+    json["pixels_over_1_255"] = c.pixels_over;
+    json["pixels_explained"] = c.pixels_explained;
+    json["pixels_nan"] = c.pixels_nan;
+    json["pareto"] = on_front;
+    return json;
+}
+
+// A field of a CSV file (RFC 4180).
+std::string quoted(const std::string& text) {
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string field = "\"";
+    for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return field + '"';
+}
+
+std::string field_of(const ordered_json& value) {
+    if (value.is_null()) return {};
+    return quoted(value.is_string() ? value.get<std::string>() : value.dump());
+}
+
+}  // namespace
+
+void print(const Sweep& sweep, std::ostream& out) {
+    const FrameOptions& options = sweep.options;
+    out << "cellist-tradeoff " << sweep.scene_name() << ", " << options.width << 'x'
+        << options.height << (options.eye_separation ? ", two eyes" : "") << ", "
+        << grouped(sweep.triangles) << " triangles, " << grouped(sweep.fragments)
+        << " fragments, up to " << sweep.most_layers << " in a pixel\n"
+        << "  " << sweep.device << " (driver " << sweep.driver << "), median of " << sweep.runs
+        << '\n';
+    print_settings(sweep, out);
+    print_fewer_layers(sweep, out);
+    print_exact_methods(sweep, out);
+    if (!sweep.left_out.empty()) out << "\nLeft out\n";
+    for (const auto& [method, reason] : sweep.left_out)
+        out << "  " << method << ": " << reason << '\n';
+}
+
+ordered_json to_json(const Sweep& sweep) {
+    const FrameOptions& options = sweep.options;
+    ordered_json json;
+    json["scene"] = sweep.scene_name();
+    json["device"] = sweep.device;
+    json["driver"] = sweep.driver;
+    json["width"] = options.width;
+    json["height"] = options.height;
+    json["eyes"] = options.eye_separation ? 2 : 1;
+    json["samples"] = options.quality.samples;
+    json["alpha"] = as_read(options.alpha);
+    json["view"] = {options.orbit.azimuth_degrees, options.orbit.elevation_degrees};
+    json["time_s"] = options.time;
+    json["opaque_floor"] = options.opaque_floor;
+    json["triangles"] = sweep.triangles;
+    json["fragments"] = sweep.fragments;
+    json["most_layers"] = sweep.most_layers;
+    json["runs"] = sweep.runs;
+    const std::vector<bool> front = pareto_front(sweep.measurements);
+    json["settings"] = ordered_json::array();
+    for (std::size_t i = 0; i < sweep.measurements.size(); ++i)
+        json["settings"].push_back(to_json(sweep.measurements[i], front[i]));
+    json["fewer_layers"] = ordered_json::array();
+    for (const auto& [m, factor] : fewer_layers(sweep))
+        json["fewer_layers"].push_back({{"layers", *m->setting.quality.layers},
+                                        {"ms", m->milliseconds},
+                                        {"speed_up", factor},
+                                        {"psnr_db", finite_or_null(m->comparison.psnr_db)},
+                                        {"ssim", m->comparison.ssim}});
+    json["exact_methods"] = ordered_json::array();
+    for (const auto& [m, factor] : exact_methods(sweep))
+        json["exact_methods"].push_back({{"method", m->setting.method->name},
+                                         {"ms", m->milliseconds},
+                                         {"times_linked", factor},
+                                         {"bytes", m->bytes}});
+    json["left_out"] = ordered_json::array();
+    for (const auto& [method, reason] : sweep.left_out)
+        json["left_out"].push_back({{"method", method}, {"reason", reason}});
+    return json;
+}
+
+std::string to_csv(const Sweep& sweep) {
+    constexpr const char* names[] = {"options",
+                                     "method",
+                                     "size",
+                                     "layers",
+                                     "epsilon",
+                                     "format",
+                                     "ms",
+                                     "fastest_ms",
+                                     "bytes",
+                                     "psnr_db",
+                                     "ssim",
+                                     "max_abs_error",
+                                     "pixels_over_1_255",
+                                     "pareto",
+                                     "failure"};
+    std::string csv;
+    for (const char* name : names) csv += std::string(csv.empty() ? "" : ",") + name;
+    csv += '\n';
+    const ordered_json figures = to_json(sweep);
+    for (const ordered_json& setting : figures["settings"]) {
+        std::string line;
+        for (const char* name : names) {
+            if (name != names[0]) line += ',';
+            if (setting.contains(name)) line += field_of(setting[name]);
+        }
+        csv += line + '\n';
+    }
+    return csv;
+}
+
+std::string dump(const ordered_json& json, int indent) {
+    return json.dump(indent, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+void write_file(const std::filesystem::path& path, const std::string& text) {
+    std::ofstream file(path, std::ios::binary);
+    file << text;
+    file.close();
+    if (!file) throw support::InputError("cannot write '" + path.string() + "'");
+}
+
+}  // namespace oit

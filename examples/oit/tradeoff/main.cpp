@@ -1,0 +1,86 @@
+#include <algorithm>
+#include <iostream>
+#include <optional>
+
+#include <cellist/cellist.hpp>
+
+#include "command_line.hpp"
+#include "figures.hpp"
+#include "input_error.hpp"
+#include "number_text.hpp"
+#include "page.hpp"
+#include "progress.hpp"
+#include "sweep.hpp"
+#include "tradeoff_options.hpp"
+
+namespace {
+
+oit::Reference reference_of(const oit::Frame& frame) {
+    support::Progress progress("reference");
+    return oit::draw_reference(frame, {.progress = [&](double part) { progress.update(part); }});
+}
+
+void print_progress(const oit::Measurement& measurement, std::size_t done, std::size_t count) {
+    std::cerr << '[' << done << '/' << count << "] " << text(measurement.setting) << ": ";
+    if (measurement.drawn())
+        std::cerr << oit::fixed(measurement.milliseconds, 2) << " ms, "
+                  << oit::fixed(measurement.comparison.psnr_db, 1) << " dB\n";
+    else
+        std::cerr << measurement.failure << '\n';
+}
+
+void run(const oit::TradeoffOptions& options) {
+    const cellist::Device device = oit::choose_device(options);
+    oit::Scene scene = oit::make_scene(options);
+    oit::Sweep sweep{.options = options,
+                     .device = device.info().name,
+                     .driver = device.info().driver,
+                     .triangles = scene.triangles(),
+                     .runs = options.runs};
+    if (options.opaque_floor) oit::add_floor(scene);
+    const oit::Frame frame = oit::make_frame(scene, options);
+    const oit::Reference reference = reference_of(frame);
+    if (reference.fragments.empty())
+        throw support::InputError("nothing transparent is in view of '" + options.scene +
+                                  "', so there is nothing to compare");
+    sweep.fragments = reference.fragments.size();
+    sweep.most_layers = reference.most_layers();
+    sweep.left_out = oit::left_out(frame, options.methods);
+
+    std::optional<oit::Pictures> pictures;
+    if (!options.html.empty()) pictures.emplace(reference, frame);
+    const std::vector<oit::Setting> settings =
+        oit::settings_of(frame, sweep.most_layers, options.methods);
+    if (settings.empty())
+        throw support::InputError("the method " + std::string(sweep.left_out.front().method) +
+                                  " cannot draw this: " + sweep.left_out.front().reason);
+    for (const oit::Setting& setting : settings) {
+        oit::Measurement measurement =
+            oit::measure(device, frame, setting, reference, options.runs);
+        if (pictures && measurement.drawn()) pictures->add(setting, measurement.image);
+        measurement.image = {};  // all of them may be more than memory holds
+        sweep.measurements.push_back(std::move(measurement));
+        print_progress(sweep.measurements.back(), sweep.measurements.size(), settings.size());
+    }
+    std::ranges::stable_sort(sweep.measurements, {}, [](const oit::Measurement& measurement) {
+        return std::pair(!measurement.drawn(), measurement.milliseconds);
+    });
+
+    oit::print(sweep, std::cout);
+    if (!options.json.empty()) oit::write_file(options.json, oit::dump(to_json(sweep), 2) + '\n');
+    if (!options.csv.empty()) oit::write_file(options.csv, to_csv(sweep));
+    if (pictures) oit::write_file(options.html, to_html(sweep, *pictures));
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+    return support::run_program("cellist-tradeoff", [&] {
+        const oit::TradeoffOptions options = oit::parse_tradeoff_options(count, arguments);
+        if (options.help)
+            std::cout << options.help_text;
+        else
+            run(options);
+        return true;
+    });
+}

@@ -1,0 +1,128 @@
+#include "page.hpp"
+
+#include <cmath>
+#include <cstdint>
+
+#include "figures.hpp"
+#include "image.hpp"
+#include "picture.hpp"
+#include "tradeoff_kernels.hpp"
+
+namespace oit {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::vector<cl_float4> linear_image(const Reference& reference) {
+    std::vector<cl_float4> image;
+    image.reserve(reference.image.size());
+    for (const glm::dvec3& colour : reference.image)
+        image.push_back({{static_cast<float>(colour.x), static_cast<float>(colour.y),
+                          static_cast<float>(colour.z), 1.0F}});
+    return image;
+}
+
+// What two pictures differ by as people see it, made larger.
+std::vector<std::uint8_t> difference(std::span<const cl_float4> a, std::span<const cl_float4> b) {
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(3 * a.size());
+    for (std::size_t p = 0; p < a.size(); ++p)
+        for (int c = 0; c < 3; ++c) {
+            const double error =
+                std::abs(support::srgb_from_linear(static_cast<double>(a[p].s[c])) -
+                         support::srgb_from_linear(static_cast<double>(b[p].s[c])));
+            bytes.push_back(static_cast<std::uint8_t>(
+                std::lround(255 * std::min(1.0, difference_factor * error))));
+        }
+    return bytes;
+}
+
+// JSON that can stand in a script element: no text in it ends that.
+std::string script_text(const ordered_json& json) {
+    std::string text;
+    for (const char c : dump(json, -1))
+        text += c == '<' ? std::string("\\u003c") : std::string(1, c);
+    return text;
+}
+
+void replace(std::string& text, std::string_view mark, const std::string& by) {
+    text.replace(text.find(mark), mark.size(), by);
+}
+
+}  // namespace
+
+Pictures::Pictures(const Reference& reference, const Frame& frame)
+    : frame_(frame), reference_(side_by_side(linear_image(reference), frame)) {
+    (void)keep(support::srgb_bytes(reference_));
+}
+
+void Pictures::add(const Setting& setting, const std::vector<cl_float4>& image) {
+    const std::vector<cl_float4> picture = side_by_side(image, frame_);
+    const std::size_t own = keep(support::srgb_bytes(picture));
+    pictures_[text(setting)] = {own, keep(difference(picture, reference_))};
+}
+
+std::size_t Pictures::keep(std::span<const std::uint8_t> bytes) {
+    std::string file = support::png(bytes, picture_width(frame_), frame_.height());
+    const auto [place, is_new] = known_.emplace(std::move(file), uris_.size());
+    if (is_new) uris_.push_back("data:image/png;base64," + base64(place->first));
+    return place->second;
+}
+
+std::string to_html(const Sweep& sweep, const Pictures& pictures) {
+    ordered_json figures = to_json(sweep);
+    for (std::size_t i = 0; i < sweep.measurements.size(); ++i) {
+        const Measurement& measurement = sweep.measurements[i];
+        if (!measurement.drawn()) continue;
+        const auto [picture, difference] = pictures.of(measurement.setting);
+        figures["settings"][i]["picture"] = picture;
+        figures["settings"][i]["difference"] = difference;
+    }
+    figures["pictures"] = pictures.uris();
+    figures["difference_factor"] = difference_factor;
+    figures["psnr_enough"] = psnr_enough;
+    std::string page(tradeoff::kernels::page_html);
+    replace(page, "{{figures}}", script_text(figures));  // last in the page, so first here
+    replace(page, "{{title}}", escaped(sweep.scene_name()));
+    return page;
+}
+
+std::string escaped(std::string_view text) {
+    std::string html;
+    for (const char c : text) {
+        switch (c) {
+            case '&':
+                html += "&amp;";
+                break;
+            case '<':
+                html += "&lt;";
+                break;
+            case '>':
+                html += "&gt;";
+                break;
+            case '"':
+                html += "&quot;";
+                break;
+            default:
+                html += c;
+        }
+    }
+    return html;
+}
+
+std::string base64(std::string_view bytes) {
+    constexpr std::string_view digits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        std::uint32_t three = 0;
+        for (std::size_t j = i; j < i + 3; ++j)
+            three = three << 8 | (j < bytes.size() ? static_cast<std::uint8_t>(bytes[j]) : 0U);
+        for (std::size_t j = 0; j < 4; ++j)
+            text += i + j <= bytes.size() ? digits[three >> (18 - 6 * j) & 63] : '=';
+    }
+    return text;
+}
+
+}  // namespace oit

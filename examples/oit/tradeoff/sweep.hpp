@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "frame_options.hpp"
+#include "measurement.hpp"
+
+namespace oit {
+
+/// A method that cannot draw the frame at all.
+struct LeftOut {
+    std::string_view method;
+    std::string reason;
+};
+
+/// All settings of a frame, measured on a device.
+struct Sweep {
+    FrameOptions options;
+    std::string device;
+    std::string driver;
+    std::uint64_t triangles = 0;
+    std::uint64_t fragments = 0;
+    std::uint64_t most_layers = 0;  ///< in any pixel
+    std::uint32_t runs = 0;
+    std::vector<Measurement> measurements = {};  ///< by time; failures last
+    std::vector<LeftOut> left_out = {};
+
+    /// The name of the scene, or of its file.
+    [[nodiscard]] std::string scene_name() const;
+};
+
+/// The settings of the named methods, in the order in which they are to be measured.
+[[nodiscard]] std::vector<Setting> settings_of(const Frame& frame, std::uint64_t most_layers,
+                                               std::span<const std::string_view> methods);
+
+/// Those of the named methods that refuse the frame.
+[[nodiscard]] std::vector<LeftOut> left_out(const Frame& frame,
+                                            std::span<const std::string_view> methods);
+
+/// From here on, in dB of PSNR, settings count as equally accurate: the error is less than a step of 16
+/// bits, and what is left is rounding.
+inline constexpr double psnr_enough = 96;
+
+/// Which measurements no other one beats: none is as fast and as accurate, and better in one of these.
+[[nodiscard]] std::vector<bool> pareto_front(std::span<const Measurement> measurements);
+
+/// A measurement, and how many times as long another one takes.
+struct Relation {
+    const Measurement* measurement;
+    double factor;
+};
+
+/// The K nearest layers in lists against all of them, K ascending: the factor is the speed-up.
+[[nodiscard]] std::vector<Relation> fewer_layers(const Sweep& sweep);
+
+/// Exact methods with nodes of floats against `linked`, fastest first: the factor is how many times as
+/// long they take (Yang et al. 2010, Table 1). Nothing where `linked` was not measured.
+[[nodiscard]] std::vector<Relation> exact_methods(const Sweep& sweep);
+
+}  // namespace oit

@@ -1,0 +1,72 @@
+#include "tradeoff_options.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+#include <CLI/CLI.hpp>
+
+#include "command_line.hpp"
+#include "image.hpp"
+#include "input_error.hpp"
+
+namespace oit {
+namespace {
+
+// All methods, the exact ones, or those that are named.
+std::vector<std::string_view> read_methods(const std::string& text) {
+    std::vector<std::string_view> names;
+    std::vector<std::string_view> asked;
+    std::istringstream list(text);
+    for (std::string name; std::getline(list, name, ',');)
+        if (name != "all" && name != "exact") asked.push_back(method_named(name).name);
+    for (const MethodInfo& info : methods())
+        if (text == "all" || (text == "exact" && info.exact) ||
+            std::ranges::find(asked, info.name) != asked.end())
+            names.push_back(info.name);
+    if (names.empty()) support::refuse("--methods", text, "names with commas between them");
+    return names;
+}
+
+std::filesystem::path read_path(const std::string& text) {
+    if (!text.empty()) support::check_image_path(text);
+    return text;
+}
+
+}  // namespace
+
+TradeoffOptions parse_tradeoff_options(int count, const char* const* arguments) {
+    TradeoffOptions options;
+    options.width = 640;
+    options.height = 360;
+    std::string methods = "all", runs = std::to_string(options.runs), json, csv, html;
+    CLI::App app{
+        "Draws a scene with every method and setting, and measures what each costs and how far it "
+        "is "
+        "from a rendering in double precision.",
+        "cellist-tradeoff"};
+    const auto add = [&](const char* name, std::string& value, const char* what, const char* type) {
+        add_option(app, name, value, what, type);
+    };
+    const FrameArguments frame(app, options);
+    add("--methods", methods, "methods to compare: all, exact, or names", "M,M,...");
+    add("--runs", runs, "timed frames of each setting, after those that warm up; times are medians",
+        "N");
+    add("--json", json, "write the figures to this file", "FILE");
+    add("--csv", csv, "write a table with a line for each setting to this file", "FILE");
+    add("--html", html, "write a report with plot and pictures to this file", "FILE");
+    app.footer(help_on_tables());
+    if (const auto help = support::parse_command_line(app, count, arguments)) {
+        options.help = true;
+        options.help_text = *help;
+        return options;
+    }
+    frame.read(options);
+    options.methods = read_methods(methods);
+    options.runs = static_cast<std::uint32_t>(support::read_number("--runs", runs, 1, 1'000'000));
+    options.json = read_path(json);
+    options.csv = read_path(csv);
+    options.html = read_path(html);
+    return options;
+}
+
+}  // namespace oit

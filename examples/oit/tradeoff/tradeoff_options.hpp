@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "frame_options.hpp"
+#include "method.hpp"
+
+namespace oit {
+
+/// What the command line of cellist-tradeoff asks for.
+struct TradeoffOptions : FrameOptions {
+    std::vector<std::string_view> methods;  ///< names, by position in the table
+    std::uint32_t runs = 5;
+    std::filesystem::path json = {};
+    std::filesystem::path csv = {};
+    std::filesystem::path html = {};
+    bool help = false;
+    std::string help_text = {};
+};
+
+/// Reads and checks the command line, the paths of the output among it. Throws InputError where an
+/// argument cannot be used.
+[[nodiscard]] TradeoffOptions parse_tradeoff_options(int count, const char* const* arguments);
+
+}  // namespace oit

@@ -1,0 +1,82 @@
+// A budget is met against the reference in double precision, again after the view has changed, and
+// where no setting meets it, that is said.
+#include "budget.hpp"
+
+#include <initializer_list>
+#include <string>
+
+#include "camera.hpp"
+#include "comparison.hpp"
+#include "input_error.hpp"
+#include "keeper.hpp"
+#include "oit/support/random_scene.hpp"
+#include "reference.hpp"
+#include "support/catch.hpp"
+#include "support/device.hpp"
+
+namespace cellist::test {
+namespace {
+
+raster::View view_from(double azimuth_degrees) {
+    return support::frame_unit_sphere({azimuth_degrees, 10}, 48, 36);
+}
+
+void require_met(const oit::Frame& frame, const oit::Keeper& keeper, const oit::Budget& budget) {
+    const oit::Comparison comparison =
+        oit::compare(oit::draw_reference(frame, {}), keeper.renderer().image(), {});
+    INFO(oit::text(keeper.choice().setting)
+         << ": " << comparison.psnr_db << " dB, largest error " << comparison.max_abs_error);
+    if (comparison.pixels_ambiguous > 0) return;  // either order is right there
+    if (budget.kind == oit::Budget::Kind::psnr)
+        CHECK(comparison.psnr_db >= budget.limit);
+    else
+        CHECK(comparison.max_abs_error <= budget.limit);
+}
+
+}  // namespace
+
+TEST_CASE("a budget is decibels, a fraction or a number") {
+    CHECK(oit::parse_budget("40dB").kind == oit::Budget::Kind::psnr);
+    CHECK(oit::parse_budget("40dB").limit == 40);
+    CHECK(oit::parse_budget("1/255").kind == oit::Budget::Kind::largest);
+    CHECK(oit::parse_budget("1/255").limit == 1.0 / 255);
+    CHECK(oit::parse_budget("0.004").limit == 0.004);
+    for (const char* text :
+         {"", "dB", "-1dB", "0dB", "nandB", "infdB", "1000dB", "1/0", "0/255", "256/255", "-0.1",
+          "0", "1", "1e400", "nan", "0.1x", "1/2/3", "40 dBx"}) {
+        INFO(text);
+        CHECK_THROWS_AS(oit::parse_budget(text), support::InputError);
+    }
+}
+
+TEST_CASE("what is chosen meets the budget, also after the view has changed") {
+    const oit::Scene scene = random_scene(1, {oit::Blend::over});
+    for (const char* text : {"35dB", "1/255"}) {
+        const oit::Budget budget = oit::parse_budget(text);
+        oit::Frame frame{.scene = scene, .views = {view_from(30)}};
+        oit::Keeper keeper(device(), frame, budget);
+        INFO("budget " << text);
+        REQUIRE(keeper.choice().met);
+        keeper.draw();
+        require_met(frame, keeper, budget);
+        for (const double azimuth : {75.0, 200.0}) {
+            frame.views = {view_from(azimuth)};
+            const oit::Keeper::Drawn drawn = keeper.draw();
+            CHECK(drawn.checked);
+            REQUIRE(budget.met_by(drawn.errors.value().told));
+            require_met(frame, keeper, budget);
+        }
+    }
+}
+
+TEST_CASE("a budget that no setting meets leads to the most accurate one") {
+    const oit::Scene scene = random_scene(2, {oit::Blend::over});
+    const oit::Frame frame{.scene = scene, .views = {view_from(30)}};
+    const oit::Keeper keeper(device(), frame, oit::parse_budget("199dB"));
+    CHECK_FALSE(keeper.choice().met);
+    for (const oit::Candidate& candidate : keeper.choice().candidates)
+        if (candidate.error)
+            CHECK(candidate.error->psnr_db() <= keeper.choice().errors.told.psnr_db());
+}
+
+}  // namespace cellist::test
