@@ -43,7 +43,7 @@ void CellScan::sum(const cl::Buffer& heads, cl_uint limit) {
                       totals_.cl());
 }
 
-cl::Event CellScan::read_later(Totals& totals) const {
+Reading CellScan::read_later(Totals& totals) const {
     return totals_.read_later(&totals, sizeof totals);
 }
 

@@ -22,7 +22,7 @@ public:
     void sum(const cl::Buffer& heads, cl_uint limit);
     /// Enqueues the reading of the totals of the last sum(): `totals` has them once the event has
     /// completed.
-    [[nodiscard]] cl::Event read_later(Totals& totals) const;
+    [[nodiscard]] Reading read_later(Totals& totals) const;
     /// The totals of the last sum(). Blocks.
 
     /// Writes the offsets of the lists, none over `capacity_nodes`, to the begin of the heads: one a

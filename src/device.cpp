@@ -150,6 +150,7 @@ Device::Device(const cl::Device& device) : state_(std::make_shared<detail::Devic
     detail::opencl([&] {
         state_->context = cl::Context(device);
         state_->queue = cl::CommandQueue(state_->context, device);
+        state_->staging = std::make_shared<detail::Staging>(state_->context, state_->queue);
         state_->device = cl::Device(device);
         state_->info = describe(device);
     });
@@ -167,6 +168,7 @@ Device::Device(cl::Context context, cl::CommandQueue queue)
         state_->info = describe(state_->device);
         state_->context = std::move(context);
         state_->queue = std::move(queue);
+        state_->staging = std::make_shared<detail::Staging>(state_->context, state_->queue);
     });
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 #include <cellist/error.hpp>
 
 #include "profile.hpp"
+#include "staging.hpp"
 
 namespace cellist::detail {
 
@@ -19,6 +21,7 @@ struct DeviceState {
     cl::Device device;
     DeviceInfo info;
     bool out_of_order = false;  ///< the queue
+    std::shared_ptr<Staging> staging;
 
     /// The queue, for one command that starts after all that were enqueued before.
     const cl::CommandQueue& ordered_queue() const;

@@ -165,7 +165,7 @@ Memory ListsCore::device_lengths(std::uint64_t at) const {
     return lengths;
 }
 
-cl::Event ListsCore::read_lengths(std::vector<cl_uint>& lengths) const {
+Reading ListsCore::read_lengths(std::vector<cl_uint>& lengths) const {
     lengths.resize(shape_.cells());
     return device_lengths(0).read_later(lengths.data(), lengths.size() * sizeof(cl_uint));
 }

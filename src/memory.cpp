@@ -31,8 +31,9 @@ void Memory::write(const void* source, std::size_t bytes) {
 }
 
 void Memory::read(void* target, std::size_t bytes) const {
-    if (bytes == 0) return;
-    opencl([&] { state_->ordered_queue().enqueueReadBuffer(buffer_, CL_TRUE, 0, bytes, target); });
+    Arrival arrival;
+    arrival = read_later(target, bytes);
+    arrival.wait();
 }
 
 cl::Event Memory::write_later(const void* source, std::size_t bytes) {
@@ -45,14 +46,16 @@ cl::Event Memory::write_later(const void* source, std::size_t bytes) {
     });
 }
 
-cl::Event Memory::read_later(void* target, std::size_t bytes) const {
-    if (bytes == 0) return state_->marker();
-    return opencl([&] {
-        cl::Event event;
-        state_->ordered_queue().enqueueReadBuffer(buffer_, CL_FALSE, 0, bytes, target, nullptr,
-                                                  &event);
-        return event;
+Reading Memory::read_later(void* target, std::size_t bytes) const {
+    if (bytes == 0) return {.event = state_->marker()};
+    Reading reading{.target = target, .bytes = bytes};
+    if (bytes <= Staging::block_bytes) reading.staged = state_->staging->block();
+    void* const to = reading.staged ? reading.staged.get() : target;
+    opencl([&] {
+        state_->ordered_queue().enqueueReadBuffer(buffer_, CL_FALSE, 0, bytes, to, nullptr,
+                                                  &reading.event);
     });
+    return reading;
 }
 
 void Memory::fill(const void* pattern, std::size_t pattern_bytes, std::size_t bytes) {

@@ -181,7 +181,7 @@ void ListStorage::allocate_pool(std::uint64_t capacity_nodes) {
     capacity_nodes_ = capacity_nodes;
 }
 
-cl::Event ListStorage::read_counters(Shards& shards) const {
+Reading ListStorage::read_counters(Shards& shards) const {
     shards.resize(shards_.size_bytes() / sizeof(cellist_shard));
     return shards_.read_later(shards.data(), shards.size() * sizeof(cellist_shard));
 }
@@ -254,7 +254,7 @@ void ListStorage::update(BuildReport& report, const Counters& counters, std::uin
     report.capacity_nodes = capacity_nodes_;
 }
 
-cl::Event ListStorage::find(Findings& findings, Kernel& kernel, const Arguments& arguments) const {
+Reading ListStorage::find(Findings& findings, Kernel& kernel, const Arguments& arguments) const {
     constexpr cl_uint zero = 0;
     findings.memory = Memory(device_, 1, sizeof findings.found, "findings");
     findings.memory.fill(&zero, sizeof zero, sizeof findings.found);

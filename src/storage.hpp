@@ -145,7 +145,7 @@ protected:
     /// pass: the kernel does not repeat itself.
     void grow_pool(std::uint64_t capacity_nodes, const BuildReport& report);
     /// Enqueues the reading of the counters: they are there when the event has completed.
-    [[nodiscard]] cl::Event read_counters(Shards& shards) const;
+    [[nodiscard]] Reading read_counters(Shards& shards) const;
     /// Of counters that are followed by so many hands. What is in these counts as free.
     [[nodiscard]] static Counters sum(const Shards& shards, cl_uint hands);
     /// The hands of threads with a pool of this capacity: see threads.clh.
@@ -169,7 +169,7 @@ protected:
     };
     /// Enqueues a validating kernel over all cells: (container, arguments..., findings). What it found
     /// is there when the event has completed.
-    [[nodiscard]] cl::Event find(Findings& findings, Kernel& kernel,
+    [[nodiscard]] Reading find(Findings& findings, Kernel& kernel,
                                  const Arguments& arguments) const;
 
     std::shared_ptr<DeviceState> device_;

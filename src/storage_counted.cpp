@@ -112,7 +112,7 @@ std::vector<cl_uint> CountedStorage::counts(BuildReport& report) {
     return words;
 }
 
-cl::Event CountedStorage::find_unfilled(Findings& findings) {
+Reading CountedStorage::find_unfilled(Findings& findings) {
     if (!validate_)
         validate_.emplace(
             kernel("cellist_validate_contiguous", kernels::validate_contiguous_cl, mode_));

@@ -56,7 +56,7 @@ private:
     void make_whole(bool without_pool) override;
 
     void make_room(const BuildReport& report);
-    cl::Event find_unfilled(Findings& findings);
+    Reading find_unfilled(Findings& findings);
     [[nodiscard]] cl_uint counts_at() const { return static_cast<cl_uint>(shape_.cells() + 1); }
 
     CellScan scan_;

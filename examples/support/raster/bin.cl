@@ -20,10 +20,9 @@ static inline uint raster_take(volatile global uint* count, uint wanted) {
     return *count < RASTER_COUNT_MAX ? atomic_add(count, wanted) : RASTER_COUNT_MAX;
 }
 
-// The blocks of a bounding box, row by row.
+// The blocks of a bounding box.
 typedef struct {
-    int x, y, across;
-    uint all;
+    int x, y, across, down;
 } RasterBox;
 
 static inline RasterBox raster_box(const RasterTriangle* t) {
@@ -31,26 +30,34 @@ static inline RasterBox raster_box(const RasterTriangle* t) {
     box.x = t->x_begin / RASTER_BLOCK_PIXELS;
     box.y = t->y_begin / RASTER_BLOCK_PIXELS;
     box.across = (t->x_end - 1) / RASTER_BLOCK_PIXELS - box.x + 1;
-    box.all = box.across * ((t->y_end - 1) / RASTER_BLOCK_PIXELS - box.y + 1);
+    box.down = (t->y_end - 1) / RASTER_BLOCK_PIXELS - box.y + 1;
     return box;
 }
 
-// The place of block i. CELLIST_NONE where no sample of it is covered, because all lie outside of one
-// edge.
-static inline uint raster_touched(const RasterTriangle* t, const RasterBox* box, uint i) {
-    const int block_x = (box->x + (int)i % box->across) * RASTER_BLOCK_PIXELS;
-    const int block_y = (box->y + (int)i / box->across) * RASTER_BLOCK_PIXELS;
+// The next block of a box for a work-item of a team, row by row: at first `lane` blocks behind the upper
+// left one, then a team's further.
+static inline void raster_step(const RasterBox* box, uint blocks, int* x, int* y) {
+    for (*x += blocks; *x >= box->across; *x -= box->across) ++*y;
+}
+
+// The upper left pixel of a block: x + 65536 * y.
+static inline uint raster_block_place(const RasterBox* box, int x, int y) {
+    return (box->x + x) * RASTER_BLOCK_PIXELS + 65536u * ((box->y + y) * RASTER_BLOCK_PIXELS);
+}
+
+// False where no sample of a block is covered, because all lie outside of one edge.
+static inline bool raster_touches(const RasterTriangle* t, const RasterBox* box, int x, int y) {
     const int reach = RASTER_SAMPLES == 1 ? 0 : RASTER_REACH;
-    const int left = raster_centre(block_x) - reach;
-    const int top = raster_centre(block_y) - reach;
+    const int left = raster_centre((box->x + x) * RASTER_BLOCK_PIXELS) - reach;
+    const int top = raster_centre((box->y + y) * RASTER_BLOCK_PIXELS) - reach;
     const int side = (RASTER_BLOCK_PIXELS - 1) * RASTER_SUBPIXELS + 2 * reach;
     bool touches = true;
     for (int i = 0; i < 3; ++i) {
-        const int x = raster_dy(t, i) < 0 ? left + side : left;
-        const int y = raster_dx(t, i) > 0 ? top + side : top;
-        touches = touches && raster_edge(t, i, x, y) >= raster_bias(t, i);
+        const int edge_x = raster_dy(t, i) < 0 ? left + side : left;
+        const int edge_y = raster_dx(t, i) > 0 ? top + side : top;
+        touches = touches && raster_edge(t, i, edge_x, edge_y) >= raster_bias(t, i);
     }
-    return touches ? block_x + 65536u * block_y : CELLIST_NONE;
+    return touches;
 }
 
 // Makes a triangle ready to be scanned. False where it is not visible.
@@ -107,12 +114,17 @@ kernel void raster_bin(RASTER_QUEUES, RASTER_SCENE) {
 
     const uint count = listed_count;
     const uint team = item / RASTER_BIN_TEAM, lane = item % RASTER_BIN_TEAM;
-    uint touched = 0;
+    uint touched = 0, looked_at = 0, found = 0;  // a bit for each of the first 32 that it looks at
     for (uint n = team; n < count; n += RASTER_BATCH / RASTER_BIN_TEAM) {
-        const RasterTriangle listed_one = n < RASTER_BATCH ? near[n] : triangles[listed[n]];
-        const RasterBox box = raster_box(&listed_one);
-        for (uint i = lane; i < box.all; i += RASTER_BIN_TEAM)
-            touched += raster_touched(&listed_one, &box, i) != CELLIST_NONE;
+        const RasterTriangle one = n < RASTER_BATCH ? near[n] : triangles[listed[n]];
+        const RasterBox box = raster_box(&one);
+        int x = 0, y = 0;
+        for (raster_step(&box, lane, &x, &y); y < box.down;
+             raster_step(&box, RASTER_BIN_TEAM, &x, &y), ++looked_at) {
+            if (!raster_touches(&one, &box, x, y)) continue;
+            ++touched;
+            if (looked_at < 32) found |= 1u << looked_at;
+        }
     }
     uint next = touched != 0 ? atomic_add(&block_count, touched) : 0;
     barrier(CLK_LOCAL_MEM_FENCE);
@@ -120,12 +132,16 @@ kernel void raster_bin(RASTER_QUEUES, RASTER_SCENE) {
     barrier(CLK_LOCAL_MEM_FENCE);
     if (touched == 0) return;
     next += first;
+    looked_at = 0;
     for (uint n = team; n < count; n += RASTER_BATCH / RASTER_BIN_TEAM) {
-        const RasterTriangle listed_one = n < RASTER_BATCH ? near[n] : triangles[listed[n]];
-        const RasterBox box = raster_box(&listed_one);
-        for (uint i = lane; i < box.all; i += RASTER_BIN_TEAM) {
-            const RasterBlock block = {listed[n], raster_touched(&listed_one, &box, i)};
-            if (block.place == CELLIST_NONE) continue;
+        const RasterTriangle one = n < RASTER_BATCH ? near[n] : triangles[listed[n]];
+        const RasterBox box = raster_box(&one);
+        int x = 0, y = 0;
+        for (raster_step(&box, lane, &x, &y); y < box.down;
+             raster_step(&box, RASTER_BIN_TEAM, &x, &y), ++looked_at) {
+            if (looked_at < 32 ? !(found >> looked_at & 1) : !raster_touches(&one, &box, x, y))
+                continue;
+            const RasterBlock block = {listed[n], raster_block_place(&box, x, y)};
             if (next < blocks_capacity) blocks[next] = block;
             ++next;
         }

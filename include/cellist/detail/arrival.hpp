@@ -1,11 +1,26 @@
 #pragma once
 
+#include <cstddef>
+#include <cstring>
+#include <memory>
+#include <utility>
+#include <vector>
+
 #include <cellist/error.hpp>
 #include <cellist/opencl.hpp>
 
 namespace cellist::detail {
 
-/// Data on its way to or from host memory. Blocks at the end of its life until the memory is free:
+/// A read that was enqueued. When the event has completed, the bytes are in `staged`, or where that is null
+/// in `target`.
+struct Reading {
+    cl::Event event = {};
+    std::shared_ptr<std::byte> staged = {};
+    void* target = nullptr;
+    std::size_t bytes = 0;
+};
+
+/// Data on its way to host memory. Blocks at the end of its life until the memory is free:
 /// declare it behind the memory.
 class Arrival {
 public:
@@ -14,12 +29,13 @@ public:
     Arrival& operator=(const Arrival&) = delete;
     ~Arrival() { settle(); }
 
-    /// Waits for this event too. Events of a queue in order: the last stands for all.
-    Arrival& operator=(cl::Event event) {
-        event_ = std::move(event);
+    /// Waits for this one too. Events of a queue in order: the last stands for all.
+    Arrival& operator=(Reading reading) {
+        event_ = std::exchange(reading.event, {});
+        if (reading.staged) staged_.push_back(std::move(reading));
         return *this;
     }
-    /// The event that completes when all has arrived. Not a copy by the bindings: those throw an error
+    /// The event that completes when wait() has nothing to wait for. Not a copy by the bindings: those throw an error
     /// of their own.
     [[nodiscard]] cl::Event event() const {
         const cl_int code = event_() == nullptr ? CL_SUCCESS : clRetainEvent(event_());
@@ -27,12 +43,15 @@ public:
         return cl::Event(event_());
     }
 
-    /// Blocks until all has arrived.
+    /// Blocks until all has arrived where it was to go.
     void wait() {
         if (event_() == nullptr) return;
         const cl_int code = clWaitForEvents(1, &event_());
         if (code != CL_SUCCESS) throw OpenClError("clWaitForEvents", code);
         event_ = cl::Event();
+        for (const Reading& reading : staged_)
+            std::memcpy(reading.target, reading.staged.get(), reading.bytes);
+        staged_.clear();
     }
     /// The same where nobody asks for the data any more. A wait that fails is tried again; a device that
     /// cannot be waited for twice is taken for lost, and not to write any more.
@@ -40,10 +59,12 @@ public:
         if (event_() == nullptr) return;
         if (clWaitForEvents(1, &event_()) != CL_SUCCESS) clWaitForEvents(1, &event_());
         event_ = cl::Event();
+        staged_.clear();
     }
 
 private:
     cl::Event event_;
+    std::vector<Reading> staged_;
 };
 
 }  // namespace cellist::detail

@@ -69,8 +69,8 @@ public:
     void sort_as_on(cl_device_type type);
     [[nodiscard]] std::function<Validation()> validate() const;
 
-    /// Enqueues the reading of every list's length; `lengths` has them when the event has completed.
-    cl::Event read_lengths(std::vector<cl_uint>& lengths) const;
+    /// Enqueues the reading of every list's length; `lengths` has them when it has arrived.
+    [[nodiscard]] Reading read_lengths(std::vector<cl_uint>& lengths) const;
 
     /// Enqueues the reading of all lists: cells + 1 offsets, and where `allocate` says, given their
     /// number, the records. Blocks only where they are too many to be copied at once.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 
+#include <cellist/detail/arrival.hpp>
 #include <cellist/opencl.hpp>
 
 namespace cellist::detail {
@@ -32,10 +33,10 @@ public:
     void write(const void* source, std::size_t bytes);
     /// Copies to the host. Blocks.
     void read(void* target, std::size_t bytes) const;
-    /// The same without blocking: the event completes when `target` holds the bytes. `source` and
-    /// `target` stay until then.
+    /// The same without blocking. `source` stays until the event has completed, `target` until the
+    /// reading has arrived.
     cl::Event write_later(const void* source, std::size_t bytes);
-    cl::Event read_later(void* target, std::size_t bytes) const;
+    [[nodiscard]] Reading read_later(void* target, std::size_t bytes) const;
     /// Repeats a pattern over the first `bytes`. Blocks only where the pattern's size is no power of
     /// two up to 128.
     void fill(const void* pattern, std::size_t pattern_bytes, std::size_t bytes);
