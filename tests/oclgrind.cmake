@@ -4,18 +4,22 @@
 #   tests      cellist_tests
 #   log        file for the simulator's reports
 #
+# Kernels are not optimised: Oclgrind 21.10 does not know all intrinsics that LLVM makes of simple code, such
+# as llvm.usub.sat, or llvm.experimental.noalias.scope.decl where it inlines a function that returns a struct.
+#
 # Four reads race with writes on purpose. All are hints, whose old value costs one more atomic and
 # nothing else; a shard that was full once stays full, the last of the least words only falls, and the
 # longest length only rises, so none can be wrong the other way round.
 #   allocated   a shard's counter, looked at before an atomic increment is tried on it
 #   pool_full   set, always to 1, by every work-item that saw all shards full
-#   found       the longest length, looked at before an atomic maximum is tried on it
 #   atomic_min  on the last of a cell's least words, looked at before a word is ranked
+#   atomic_max  on the longest length, looked at before an atomic maximum is tried on it
 cmake_minimum_required(VERSION 3.25)
 
 set(ENV{CELLIST_DEVICE} "Oclgrind")
 execute_process(
-    COMMAND "${oclgrind}" --data-races --check-api --max-errors 100000 --log "${log}"
+    COMMAND "${oclgrind}" --data-races --check-api --max-errors 100000
+        --build-options -cl-opt-disable --log "${log}"
         "${tests}" "[oclgrind]"
     COMMAND_ECHO STDOUT
     COMMAND_ERROR_IS_FATAL ANY)
@@ -23,7 +27,7 @@ execute_process(
 file(READ "${log}" text)
 string(REGEX MATCHALL "(^|\n)[^ \t\n][^\n]*" reports "${text}")
 string(REGEX MATCHALL "(^|\n)Read-write data race at global memory[^\n]*" races "${text}")
-string(REGEX MATCHALL "load volatile i32[^\n]*%(allocated|pool_full|found)|call [^\n]*atomic_minPU3AS1Vjj"
+string(REGEX MATCHALL "load volatile i32[^\n]*%(allocated|pool_full)|call [^\n]*atomic_m(in|ax)PU3AS1Vjj"
     hints "${text}")
 list(LENGTH reports report_count)
 list(LENGTH races race_count)

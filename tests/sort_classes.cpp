@@ -71,6 +71,29 @@ TEST_CASE("lists at the borders of the classes are sorted") {
                    [](const Item& a, const Item& b) { return a.id > b.id; });
 }
 
+TEST_CASE("a list of each class is sorted in every way", "[oclgrind]") {
+    CELLIST_EACH_STORAGE(storage);
+    CELLIST_RANDOM(random, 177u);
+    const std::vector<cl_uint> lengths{1, 20, 40, 300, 600, 0};
+    const Inserts<Item> inserts = inserts_of(lengths, random);
+    const Oracle<Item> oracle = oracle_of(inserts, lengths.size());
+    Lists<Item> lists(device(), {lengths.size()}, {.storage = storage});
+    CELLIST_EACH_DIVISION(lists);
+    Inserter inserter(lists);
+    inserter.build(lists, inserts);
+    lists.partial_sort(&Item::key, 4);
+    require_sound(lists, inserts.size());
+    require_front(lists.download(), oracle, 4);
+    inserter.build(lists, inserts);
+    lists.sort(&Item::key);
+    require_sound(lists, inserts.size());
+    require_sorted(lists.download(), oracle, by_key);
+    inserter.build(lists, inserts);
+    lists.sort_async(&Item::key).wait();
+    require_sound(lists, inserts.size());
+    require_sorted(lists.download(), oracle, by_key);
+}
+
 TEST_CASE("many short lists and a few long ones are sorted") {
     CELLIST_EACH_STORAGE(storage);
     CELLIST_RANDOM(random, 171u);
