@@ -80,8 +80,8 @@ private:
     [[noreturn]] void refuse() {
         const std::uint64_t longest = longest_list(source_);
         throw support::InputError(
-            "a budget of " + std::to_string(budget()) +
-            " bytes is too small for this frame: the least that works is " +
+            "--memory of " + std::to_string(budget()) +
+            " bytes is too little for this frame: the least that works is " +
             std::to_string(head_bytes_ + count_bytes_ + longest * node_bytes_) + " bytes, for " +
             std::to_string(source_.frame().pixels()) + " pixels and a list of " +
             std::to_string(longest) + " fragments");

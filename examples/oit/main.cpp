@@ -80,6 +80,16 @@ oit::Comparison compare_with_reference(const oit::Frame& frame, const oit::Rende
     return oit::compare(reference, image, renderer.method().depths());
 }
 
+// With all layers; and with as many as were asked for, which tells what the device makes of these.
+void compare_with_references(oit::Report& report, const oit::Frame& frame,
+                             const oit::Renderer& renderer, const std::vector<cl_float4>& image) {
+    oit::Frame all = frame;
+    all.quality.layers.reset();
+    report.comparison = compare_with_reference(all, renderer, image);
+    if (frame.quality.layers)
+        report.nearest_comparison = compare_with_reference(frame, renderer, image);
+}
+
 void draw_with_method(oit::Report& report, oit::Renderer& renderer, oit::Frame& frame) {
     renderer.warm_up();
     const bool changes = report.options.until || report.options.turn_degrees != 0;
@@ -121,7 +131,7 @@ void write(oit::Report& report, const oit::Frame& frame, const oit::Renderer& re
     report.slices = renderer.method().slices();
     report.method_bytes = renderer.method().device_bytes();
     report.device_bytes = renderer.device_bytes();
-    if (options.reference) report.comparison = compare_with_reference(frame, renderer, image);
+    if (options.reference) compare_with_references(report, frame, renderer, image);
     if (!options.json.empty()) oit::write_json(report, options.json);
     oit::print(report, std::cout);
 }

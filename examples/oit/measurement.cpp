@@ -1,7 +1,10 @@
 #include "measurement.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <exception>
+#include <numeric>
 
 #include "renderer.hpp"
 #include "stopwatch.hpp"
@@ -11,35 +14,68 @@ namespace {
 
 constexpr double most_ms = 10'000;  // so that a slow method does not hold up all others
 
-void time_frames(Renderer& renderer, std::uint32_t runs, Measurement& result) {
+std::vector<double> time_frames(Renderer& renderer, std::uint32_t frames) {
     const support::Stopwatch stopwatch;
     renderer.warm_up();
     std::vector<double> times;
     do times.push_back(renderer.draw());
-    while (times.size() < runs && stopwatch.ms() < most_ms);
-    result.runs = static_cast<std::uint32_t>(times.size());
-    result.fastest = std::ranges::min(times);
-    result.milliseconds = support::median(std::move(times));
+    while (times.size() < frames && stopwatch.ms() < most_ms);
+    return times;
+}
+
+// The value below which the part is, between two of the values where it is between them.
+double quantile(const std::vector<double>& sorted, double part) {
+    const double place = part * static_cast<double>(sorted.size() - 1);
+    const auto below = static_cast<std::size_t>(place);
+    const std::size_t above = std::min(below + 1, sorted.size() - 1);
+    return std::lerp(sorted[below], sorted[above], place - static_cast<double>(below));
+}
+
+std::string reason(const std::exception& error) {
+    const std::string message = error.what();
+    return message.substr(0, message.find('\n'));
 }
 
 }  // namespace
 
+void Measurement::add(const std::vector<double>& more) {
+    times.insert(times.end(), more.begin(), more.end());
+    std::vector<double> sorted = times;
+    std::ranges::sort(sorted);
+    fastest = sorted.front();
+    milliseconds = quantile(sorted, 0.5);
+    lower_quartile = quantile(sorted, 0.25);
+    upper_quartile = quantile(sorted, 0.75);
+}
+
 Measurement measure(const cellist::Device& device, const Frame& frame, const Setting& setting,
-                    const Reference& reference, std::uint32_t runs) {
+                    const Reference& reference, std::uint32_t frames) {
     Measurement result{.setting = setting};
     const Frame drawn = with_setting(frame, setting);
     try {
         Renderer renderer(device, drawn, *setting.method);
-        time_frames(renderer, runs, result);
+        result.add(time_frames(renderer, frames));
         result.bytes = renderer.method().device_bytes();
         result.image = renderer.image();
     } catch (const std::exception& error) {
-        const std::string message = error.what();
-        result.failure = message.substr(0, message.find('\n'));
+        result.failure = reason(error);
         return result;
     }
     result.comparison = compare(reference, result.image, {});
     return result;
+}
+
+void measure_again(const cellist::Device& device, const Frame& frame, std::uint32_t frames,
+                   Measurement& measurement) {
+    const std::vector<double>& times = measurement.times;
+    if (!measurement.drawn() || std::accumulate(times.begin(), times.end(), 0.0) >= most_ms) return;
+    const Frame drawn = with_setting(frame, measurement.setting);
+    try {
+        Renderer renderer(device, drawn, *measurement.setting.method);
+        measurement.add(time_frames(renderer, frames));
+    } catch (const std::exception& error) {
+        measurement.failure = reason(error);
+    }
 }
 
 }  // namespace oit

@@ -14,12 +14,12 @@ std::unique_ptr<Method> make_method(FragmentSource& source, const MethodInfo& in
     return info.make(source);
 }
 
-void check_memory(const Method& method, const std::optional<std::uint64_t>& budget) {
-    if (budget && method.device_bytes() > *budget)
-        throw support::InputError(
-            "the method takes " + std::to_string(method.device_bytes()) +
-            " bytes, over the budget of " + std::to_string(*budget) +
-            ": raise it to that, or take a method with lists, which are drawn in slices");
+void check_memory(const Method& method, const std::optional<std::uint64_t>& most) {
+    if (most && method.device_bytes() > *most)
+        throw support::InputError("the method takes " + std::to_string(method.device_bytes()) +
+                                  " bytes, over the " + std::to_string(*most) +
+                                  " of --memory: raise it to that, or take a method with lists, "
+                                  "which are drawn in slices");
 }
 
 std::unique_ptr<Reduction> make_reduction(const cellist::Device& device, const Frame& frame) {

@@ -26,6 +26,10 @@ std::string dropped_text(const support::MeshDrops& drops) {
     return text.empty() ? "" : " (dropped: " + text + ")";
 }
 
+nlohmann::ordered_json finite_or_null(double value) {
+    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
 // What a blend that ends early leaves out, at most: each channel, linear. What is added on top of
 // what passes is not bounded by it.
 std::string early_end_text(const Report& report) {
@@ -34,11 +38,21 @@ std::string early_end_text(const Report& report) {
     return "linear colours off by " + fixed(255 * bound, 4) + " / 255 at most";
 }
 
-void print_comparison(const Comparison& c, std::ostream& out) {
+std::string nearest_text(std::uint32_t layers) {
+    return "the " + grouped(layers) + (layers == 1 ? " nearest layer" : " nearest layers");
+}
+
+// How far off the picture is, and how far from what the nearest layers make, where only these were asked
+// for.
+void print_comparison(const Report& report, std::ostream& out) {
     const auto line = [&out](const std::string& name) -> std::ostream& {
         return out << "  " << std::left << std::setw(18) << name << std::right;
     };
-    line("PSNR") << fixed(c.psnr_db, 1) << " dB against double precision\n";
+    const Comparison& c = *report.comparison;
+    line("PSNR") << fixed(c.psnr_db, 1) << " dB against all layers in double precision\n";
+    if (report.nearest_comparison)
+        line("") << fixed(report.nearest_comparison->psnr_db, 1) << " dB against "
+                 << nearest_text(*report.options.quality.layers) << " in double precision\n";
     line("SSIM") << fixed(c.ssim, 6) << '\n';
     line("largest error") << fixed(255 * c.max_abs_error, 4) << " / 255\n";
     line("over 1/255") << grouped(c.pixels_over) << " of " << grouped(c.pixels) << " pixels, "
@@ -64,8 +78,7 @@ void print(const Report& report, std::ostream& out) {
     const Options& options = report.options;
     out << "cellist-oit " << std::filesystem::path(options.scene).filename().string() << ", "
         << options.width << 'x' << options.height << ", alpha " << options.alpha << ", "
-        << (options.quality.layers ? std::to_string(*options.quality.layers) + " nearest layers"
-                                   : "all layers")
+        << (options.quality.layers ? nearest_text(*options.quality.layers) : "all layers")
         << (options.opaque_floor ? ", opaque floor" : "") << '\n';
     line("device") << report.device << " (driver " << report.driver << ")\n";
     line("method") << method_text({&method_named(options.method), options.quality}) << ", nodes of "
@@ -93,7 +106,7 @@ void print(const Report& report, std::ostream& out) {
     if (options.quality.epsilon > 0) line("early end") << early_end_text(report) << '\n';
     if (report.pixels_nan > 0)
         line("NaN") << grouped(report.pixels_nan) << " pixels, drawn black\n";
-    if (report.comparison) print_comparison(*report.comparison, out);
+    if (report.comparison) print_comparison(report, out);
     if (report.mesh_ends_within_line)
         line("note") << "the mesh file ends within a line: it may have been cut off\n";
     line("picture") << std::filesystem::absolute(options.out).lexically_normal().string() << '\n';
@@ -147,7 +160,7 @@ void write_json(const Report& report, const std::filesystem::path& path) {
     json["max_abs_error"] = nullptr;
     if (report.comparison) {
         const Comparison& c = *report.comparison;
-        if (std::isfinite(c.psnr_db)) json["psnr_db"] = c.psnr_db;
+        json["psnr_db"] = finite_or_null(c.psnr_db);
         json["ssim"] = c.ssim;
         json["max_abs_error"] = c.max_abs_error;
         json["reference"] = {{"pixels_over_1_255", c.pixels_over},
@@ -156,6 +169,15 @@ void write_json(const Report& report, const std::filesystem::path& path) {
                              {"pixels_with_other_count", c.pixels_with_other_count},
                              {"fragments", c.fragments},
                              {"max_depth_error", c.max_depth_error}};
+    }
+    json["nearest_layers"] = nullptr;
+    if (report.nearest_comparison) {
+        const Comparison& c = *report.nearest_comparison;
+        json["nearest_layers"] = {{"psnr_db", finite_or_null(c.psnr_db)},
+                                  {"ssim", c.ssim},
+                                  {"max_abs_error", c.max_abs_error},
+                                  {"pixels_over_1_255", c.pixels_over},
+                                  {"pixels_explained", c.pixels_explained}};
     }
     std::ofstream file(path);
     file << json.dump(2) << '\n';

@@ -28,10 +28,12 @@ struct Report {
     std::uint64_t device_bytes = 0;
     std::uint32_t slices = 1;  ///< that the frame was built in
     std::uint64_t pixels_nan = 0;
-    float colour_max = 1;  ///< brightest channel of a fragment, at most
-    double frame_ms = 0;   ///< from clearing to the image on the device, median
-    PassTimes passes;      ///< medians
-    std::optional<Comparison> comparison;
+    float colour_max = 1;                  ///< brightest channel of a fragment, at most
+    double frame_ms = 0;                   ///< from clearing to the image on the device, median
+    PassTimes passes;                      ///< medians
+    std::optional<Comparison> comparison;  ///< with all layers
+    std::optional<Comparison>
+        nearest_comparison;        ///< with Quality::layers, where there is a number
     std::optional<Choice> choice;  ///< for a budget
     KeptBudget kept;
 };

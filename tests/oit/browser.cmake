@@ -8,7 +8,7 @@ cmake_minimum_required(VERSION 3.25)
 
 set(page "${folder}/report.html")
 execute_process(
-    COMMAND "${tradeoff}" extreme-alphas --size 64x48 --methods weighted,fixed --runs 1 --html "${page}"
+    COMMAND "${tradeoff}" extreme-alphas --size 64x48 --methods weighted,fixed --frames 3 --html "${page}"
     COMMAND_ERROR_IS_FATAL ANY)
 execute_process(
     COMMAND "${browser}" --headless --no-sandbox --disable-gpu "--user-data-dir=${folder}/profile"

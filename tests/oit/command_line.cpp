@@ -1,5 +1,8 @@
 // The program refuses what it cannot do, in one line that names the value.
 #include <tuple>
+#include <utility>
+
+#include <nlohmann/json.hpp>
 
 #include "oit/support/program.hpp"
 
@@ -52,6 +55,7 @@ TEST_CASE("bad arguments are refused") {
              {"--method linked:8", "none"},
              {"--method adaptive:", "8, 16"},
              {"--method dual_peeling --layers 3", "dual_peeling"},
+             {"--method kbuffer:4 --layers 6", "keeps 4 layers, and cannot blend 6"},
              {"--method weighted --blend additive", "weighted"},
              {"--memory 0", "such as 64MiB"},
              {"--memory -1", "-1"},
@@ -59,8 +63,9 @@ TEST_CASE("bad arguments are refused") {
              {"--memory 1.5GiB", "1.5GiB"},
              {"--memory MiB", "MiB"},
              {"--memory 99999999999GiB", "99999999999GiB"},
-             {"--memory 1KiB", "the least that works is"},
-             {"--memory 1KiB --method weighted", "over the budget of 1024"},
+             {"--memory 1KiB", "--memory of 1024 bytes is too little"},
+             {"--memory 1KiB --layers 2", "the least that works is"},
+             {"--memory 1KiB --method weighted", "over the 1024 of --memory"},
              {"--reduce 0", "1, 2 or 4"},
              {"--reduce 3", "1, 2 or 4"},
              {"--reduce 2 --samples 4", "one sample"},
@@ -155,6 +160,39 @@ TEST_CASE("the picture, the screen and the JSON agree, and pictures are equal in
     const std::string first = read_file(program.folder() / "a.png");
     CHECK(first.starts_with("\x89PNG"));
     CHECK(first == read_file(program.folder() / "b.png"));
+}
+
+TEST_CASE("fewer layers are compared with all, and with as many") {
+    const Program program = oit_program();
+    const auto figures = [&](const std::string& arguments) {
+        const Outcome outcome = program.run(
+            "knot.obj --size 160x90 --frames 1 --reference --out a.png --json a.json " + arguments);
+        INFO(outcome.error);
+        REQUIRE(outcome.exit_code == 0);
+        CHECK(contains(outcome.out, "dB against all layers"));
+        return std::pair(outcome.out,
+                         nlohmann::json::parse(read_file(program.folder() / "a.json")));
+    };
+    const auto [text, one] = figures("--layers 1");
+    CHECK(contains(text, "dB against the 1 nearest layer in double precision"));
+    CHECK(one["psnr_db"] < 40);
+    CHECK(one["nearest_layers"]["psnr_db"] > 100);
+    for (const std::string arguments : {"", "--layers all", "--method kbuffer:1"}) {
+        INFO(arguments);
+        const auto [other_text, other] = figures(arguments);
+        CHECK_FALSE(contains(other_text, "nearest layer in double precision"));
+        CHECK(other["nearest_layers"].is_null());
+        CHECK((other["psnr_db"] > 100) == (arguments != "--method kbuffer:1"));
+    }
+    const auto [exact_text, exact] = figures("--layers 1000");
+    CHECK(exact["psnr_db"] == exact["nearest_layers"]["psnr_db"]);
+}
+
+TEST_CASE("slots are not fewer than the layers that are blended") {
+    const Program program = oit_program();
+    for (const std::string layers : {"2", "4", "all"})
+        CHECK(program.run("knot.obj --size 40x30 --frames 1 --method kbuffer:4 --layers " + layers)
+                  .exit_code == 0);
 }
 
 TEST_CASE("without a reference, its figures are null") {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <set>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "camera.hpp"
 #include "measurement.hpp"
@@ -12,6 +14,7 @@
 #include "support/catch.hpp"
 #include "support/device.hpp"
 #include "support/errors.hpp"
+#include "sweep.hpp"
 
 namespace cellist::test {
 namespace {
@@ -153,7 +156,7 @@ TEST_CASE("a measurement has times, memory, errors and the image") {
     const oit::MethodInfo& linked = oit::method_named("linked");
     const oit::Measurement all = measure(device(), frame, {&linked, {}}, reference, 3);
     REQUIRE(all.drawn());
-    CHECK(all.runs == 3);
+    CHECK(all.times.size() == 3);
     CHECK(all.fastest > 0);
     CHECK(all.fastest <= all.milliseconds);
     CHECK(all.bytes > 0);
@@ -166,6 +169,39 @@ TEST_CASE("a measurement has times, memory, errors and the image") {
     CHECK(one.comparison.ssim < 0.99);
 }
 
+TEST_CASE("settings are measured by turns, each with as many frames") {
+    const oit::Scene scene = knot();
+    const oit::Frame frame = frame_of(scene);
+    const oit::Reference reference = oit::draw_reference(frame);
+    const std::vector<oit::Setting> settings{{&oit::method_named("linked"), {}},
+                                             {&oit::method_named("dual_peeling"), {.layers = 3}},
+                                             {&oit::method_named("weighted"), {}}};
+    for (const std::uint32_t frames : {1U, 2U, 5U}) {
+        std::vector<std::string> names;
+        double done = 0;
+        const std::vector<oit::Measurement> measurements = oit::measure_by_turns(
+            device(), frame, reference, settings, frames,
+            [&](oit::Measurement& measurement) {
+                names.emplace_back(measurement.setting.method->name);
+                CHECK(measurement.times.size() <= 2);
+                CHECK(measurement.image.empty() == !measurement.drawn());
+            },
+            [&](double part) {
+                CHECK(part >= done);
+                CHECK(part < 1);
+                done = part;
+            });
+        CHECK(names == std::vector<std::string>{"linked", "dual_peeling", "weighted"});
+        CHECK((done > 0) == (frames > 1));
+        REQUIRE(measurements.size() == 3);
+        CHECK(measurements[0].times.size() == frames);
+        CHECK_FALSE(measurements[1].drawn());
+        CHECK(measurements[1].times.empty());
+        CHECK(measurements[2].times.size() == frames);
+        CHECK(measurements[2].comparison.psnr_db > 20);
+    }
+}
+
 TEST_CASE("what cannot be drawn has a reason and no figures") {
     const oit::Scene scene = knot();
     const oit::Frame frame = frame_of(scene);
@@ -174,7 +210,7 @@ TEST_CASE("what cannot be drawn has a reason and no figures") {
         measure(device(), frame, refused, oit::draw_reference(frame), 2);
     CHECK_FALSE(measurement.drawn());
     CHECK(contains(measurement.failure, "farthest"));
-    CHECK(measurement.runs == 0);
+    CHECK(measurement.times.empty());
     CHECK(measurement.image.empty());
 }
 

@@ -16,8 +16,7 @@ using nlohmann::json;
 oit::Measurement measured(const oit::Quality& quality, double ms, double psnr_db,
                           std::string_view method = "linked") {
     oit::Measurement measurement{.setting = {&oit::method_named(method), quality}};
-    measurement.milliseconds = measurement.fastest = ms;
-    measurement.runs = 1;
+    measurement.add({ms});
     measurement.bytes = 1000;
     measurement.comparison.psnr_db = psnr_db;
     measurement.comparison.ssim = 0.5;
@@ -32,7 +31,7 @@ oit::Sweep sweep() {
     result.device = "device";
     result.driver = "1.0";
     result.most_layers = 64;
-    result.runs = 1;
+    result.frames = 1;
     result.measurements = {
         measured({.layers = 8}, 2, 13.5),
         measured({}, 3, std::numeric_limits<double>::infinity()),
@@ -56,6 +55,33 @@ TEST_CASE("the front is what nothing beats in both time and error") {
               failed,
           }) == std::vector{true, false, true, false, true, false, true, false});
     CHECK(oit::pareto_front({}).empty());
+}
+
+TEST_CASE("times within three in a hundred count as equal") {
+    CHECK(oit::pareto_front(std::vector{
+              measured({}, 100, 20),                         // the fastest, hardly
+              measured({}, 102, 21),                         // as fast, more accurate
+              measured({}, 104, 99), measured({}, 107, 98),  // as fast and as accurate
+              measured({}, 108, 98),                         // slower
+          }) == std::vector{false, true, true, true, false});
+}
+
+TEST_CASE("half of the times are within the spread") {
+    oit::Measurement measurement;
+    measurement.add({5, 1, 9});
+    CHECK(measurement.milliseconds == 5);
+    CHECK(measurement.fastest == 1);
+    measurement.add({4, 6});
+    CHECK(measurement.times.size() == 5);
+    CHECK(measurement.milliseconds == 5);
+    CHECK(measurement.lower_quartile == 4);
+    CHECK(measurement.upper_quartile == 6);
+    CHECK(measurement.spread() == 0.2);
+    CHECK(measured({}, 7, 20).spread() == 0);
+    const std::vector several{measurement, measured({}, 7, 20), measurement,
+                              oit::Measurement{.setting = {}, .failure = "none"}};
+    CHECK(oit::typical_spread(several) == 0.2);
+    CHECK(oit::typical_spread({}) == 0);
 }
 
 TEST_CASE("fewer layers and exact methods are related to all layers in lists") {
@@ -106,8 +132,8 @@ TEST_CASE("lines of CSV have a field for each name") {
     for (std::string line; std::getline(csv, line);) lines.push_back(line);
     REQUIRE(lines.size() == 5);
     CHECK(lines[0].starts_with("options,method,size,layers,"));
-    CHECK(
-        lines[1].starts_with("--method linked --layers 8,linked,,8,0.0,float,2.0,2.0,1000,13.5,"));
+    CHECK(lines[1].starts_with(
+        "--method linked --layers 8,linked,,8,0.0,float,2.0,2.0,2.0,2.0,1000,13.5,"));
     CHECK(lines[4].ends_with(",\"too large, \"\"by far\"\"\""));
     const std::size_t commas = count_of(lines[0], ",");
     for (std::size_t i = 1; i < 4; ++i) CHECK(count_of(lines[i], ",") == commas);
@@ -153,7 +179,7 @@ TEST_CASE("a page needs no other file, and shows names as text") {
 TEST_CASE("a run writes table, JSON, CSV and page") {
     const Program program(CELLIST_TRADEOFF_PROGRAM);
     const Outcome outcome = program.run(
-        "knot.obj --size 40x30 --methods weighted,moments --runs 1 --json a.json --csv a.csv "
+        "knot.obj --size 40x30 --methods weighted,moments --frames 4 --json a.json --csv a.csv "
         "--html a.html --stereo 0.1");
     INFO(outcome.error);
     REQUIRE(outcome.exit_code == 0);
@@ -165,6 +191,9 @@ TEST_CASE("a run writes table, JSON, CSV and page") {
     REQUIRE(figures["settings"].size() == 2);
     for (const json& setting : figures["settings"]) {
         CHECK(setting["ms"] > 0);
+        CHECK(setting["frames"] == 4);
+        CHECK(setting["lower_quartile_ms"] <= setting["ms"]);
+        CHECK(setting["upper_quartile_ms"] >= setting["ms"]);
         CHECK(setting["psnr_db"] > 20);
         CHECK(setting["ssim"] > 0.5);
     }
@@ -185,7 +214,7 @@ TEST_CASE("what cannot be compared is refused in a line") {
           {"knot.obj --methods nosuch", "weighted"},
           {"knot.obj --methods ,", "''"},
           {"knot.obj --methods weighted --blend additive", "other"},
-          {"knot.obj --runs 0", "1 to"},
+          {"knot.obj --frames 0", "1 to"},
           {"knot.obj --size 0x1", "0x1"},
           {"knot.obj --html missing/a.html", "missing"},
           {"knot.obj --json missing/a.json", "missing"},

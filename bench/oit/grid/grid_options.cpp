@@ -19,7 +19,8 @@ int read_side(const std::string& text) {
 GridOptions parse_grid_options(int count, const char* const* arguments) {
     GridOptions options;
     std::string size = std::to_string(options.width) + "x" + std::to_string(options.height),
-                runs = std::to_string(options.runs), cost = shortest(options.cost), meshes, json;
+                frames = std::to_string(options.frames), cost = shortest(options.cost), meshes,
+                json;
     CLI::App app{
         "Draws ten scenes and views within three budgets each, as cellist-oit --budget does, and "
         "looks for the cheapest setting that keeps the budget among all there are, by drawing all "
@@ -38,7 +39,7 @@ GridOptions parse_grid_options(int count, const char* const* arguments) {
         "DIR");
     add("--size", size, "image size in pixels", "WxH");
     add("--filter", options.filter, "only the views whose names have this text in them", "TEXT");
-    add("--runs", runs, "timed frames of each setting, at least; more where it is close", "N");
+    add("--frames", frames, "timed frames of each setting, at least; more where it is close", "N");
     add("--cost", cost, "of what was chosen, in costs of the best, at most", "RATIO");
     add("--json", json, "write the figures to this file", "FILE");
     add("--git", options.git, "the commit that the figures name", "HASH");
@@ -55,7 +56,8 @@ GridOptions parse_grid_options(int count, const char* const* arguments) {
     options.width = read_side(size.substr(0, x));
     options.height = read_side(size.substr(x + 1));
     options.meshes = meshes;
-    options.runs = static_cast<std::uint32_t>(support::read_number("--runs", runs, 1, 10'000));
+    options.frames =
+        static_cast<std::uint32_t>(support::read_number("--frames", frames, 1, 10'000));
     options.cost = read_between("--cost", cost, 1, 1e6, "a number from 1 to 1000000");
     if (!json.empty()) support::check_image_path(json);
     options.json = json;

@@ -11,9 +11,9 @@ struct GridOptions {
     int width = 320;
     int height = 180;
     std::filesystem::path meshes = {};
-    std::string filter = {};  ///< in the names of the views to draw
-    std::uint32_t runs = 7;   ///< frames that each setting is timed for at least
-    double cost = 1.1;        ///< of the chosen setting, in costs of the best one, at most
+    std::string filter = {};   ///< in the names of the views to draw
+    std::uint32_t frames = 7;  ///< of each setting that are timed, at least
+    double cost = 1.1;         ///< of the chosen setting, in costs of the best one, at most
     std::filesystem::path json = {};
     std::string git = {};  ///< the commit that the results name
     std::string device = {};

@@ -79,7 +79,7 @@ ordered_json to_json(const std::vector<GridResult>& results, const GridOptions& 
                      const cellist::Device& device) {
     ordered_json json{{"device", device.info().name}, {"driver", device.info().driver},
                       {"git", options.git},           {"width", options.width},
-                      {"height", options.height},     {"runs", options.runs},
+                      {"height", options.height},     {"frames", options.frames},
                       {"most_cost", options.cost}};
     json["cases"] = ordered_json::array();
     json["views"] = ordered_json::array();

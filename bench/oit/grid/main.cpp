@@ -54,7 +54,7 @@ oit::GridResult run_view(const cellist::Device& device, const oit::GridView& vie
     oit::Scene scene = oit::make_scene(drawn);
     if (drawn.opaque_floor) oit::add_floor(scene);
     const oit::Frame frame = oit::make_frame(scene, drawn);
-    oit::Search search(device, frame, options.runs);
+    oit::Search search(device, frame, options.frames);
     oit::GridResult result{.view = &view,
                            .fragments = search.truth().reference().fragments.size(),
                            .most_layers = search.truth().reference().most_layers(),

@@ -1,6 +1,6 @@
 # Runs cellist-budget-grid on one small scene: budgets are kept, and the file of figures can be read.
 # What settings cost is not looked at.
-execute_process(COMMAND "${program}" --filter coplanar --size 48x36 --runs 1 --cost 1000000 --json "${json}"
+execute_process(COMMAND "${program}" --filter coplanar --size 48x36 --frames 1 --cost 1000000 --json "${json}"
     RESULT_VARIABLE result)
 if(NOT result EQUAL 0)
     message(FATAL_ERROR "cellist-budget-grid: ${result}")

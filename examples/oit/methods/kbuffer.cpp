@@ -1,5 +1,6 @@
 // The nearest layers of each pixel in slots, and nothing of the others: as many as the size
 // says, Quality::layers, or 8.
+#include <algorithm>
 #include <array>
 
 #include "list_method.hpp"
@@ -21,10 +22,17 @@ std::unique_ptr<Method> make(FragmentSource& source) {
                                      .nearest_by = "key"});
 }
 
+std::string refusal(const Frame& frame, const Needs&) {
+    const Quality& quality = frame.quality;
+    if (!quality.size || !quality.layers || *quality.layers <= *quality.size) return {};
+    return "it keeps " + std::to_string(*quality.size) + " layers, and cannot blend " +
+           std::to_string(*quality.layers) + ": leave out its size, or lower --layers";
+}
+
 // Its slots hold the nearest layers.
 std::optional<PictureError> bound(const SceneMeasure& scene, const Quality& quality) {
     Quality nearest = quality;
-    nearest.layers = slots_of(quality);
+    nearest.layers = std::min(slots_of(quality), quality.layers.value_or(~0U));
     return bound_of_layers(scene, nearest);
 }
 
@@ -34,7 +42,7 @@ const MethodRegistration kbuffer(
      .position = 70,
      .exact = false,
      .sizes = sizes,
-     .refusal = refuses_nothing,
+     .refusal = refusal,
      .make = make,
      .bound = bound,
      .passes = two_passes});

@@ -21,22 +21,29 @@ std::string decibels(double psnr_db) {
 
 void print_settings(const Sweep& sweep, std::ostream& out) {
     const std::vector<bool> front = pareto_front(sweep.measurements);
-    out << "\n   " << std::setw(9) << "ms" << std::setw(9) << "MB" << std::setw(9) << "PSNR dB"
-        << std::setw(9) << "SSIM" << std::setw(11) << "error/255"
+    out << "\n   " << std::setw(9) << "ms" << std::setw(6) << "+-%" << std::setw(9) << "MB"
+        << std::setw(9) << "PSNR dB" << std::setw(9) << "SSIM" << std::setw(11) << "error/255"
         << "  setting\n";
     for (std::size_t i = 0; i < sweep.measurements.size(); ++i) {
         const Measurement& m = sweep.measurements[i];
         out << (front[i] ? " * " : "   ");
         if (m.drawn())
-            out << std::setw(9) << fixed(m.milliseconds, 2) << std::setw(9) << megabytes(m.bytes)
-                << std::setw(9) << decibels(m.comparison.psnr_db) << std::setw(9)
-                << fixed(m.comparison.ssim, 5) << std::setw(11)
-                << fixed(255 * m.comparison.max_abs_error, 3) << "  " << text(m.setting) << '\n';
+            out << std::setw(9) << fixed(m.milliseconds, 2) << std::setw(6)
+                << fixed(100 * m.spread(), 1) << std::setw(9) << megabytes(m.bytes) << std::setw(9)
+                << decibels(m.comparison.psnr_db) << std::setw(9) << fixed(m.comparison.ssim, 5)
+                << std::setw(11) << fixed(255 * m.comparison.max_abs_error, 3) << "  "
+                << text(m.setting) << '\n';
         else
-            out << std::setw(9) << "-" << std::setw(40) << ""
+            out << std::setw(9) << "-" << std::setw(46) << ""
                 << "  " << text(m.setting) << ": " << m.failure << '\n';
     }
-    out << " * nothing here is both as fast and as accurate; error: the largest of any channel\n";
+    const double equal = equally_fast - 1, spread = typical_spread(sweep.measurements);
+    out << " * nothing here is both as fast, within " << fixed(100 * equal, 0)
+        << " %, and as accurate; error: the largest of any channel\n"
+           " +-%: half of the frames differ from the median by no more\n";
+    if (spread > equal)
+        out << " The times are uncertain: those of half the settings spread by "
+            << fixed(100 * spread, 0) << " % and more. Smaller differences mean nothing.\n";
 }
 
 void print_fewer_layers(const Sweep& sweep, std::ostream& out) {
@@ -86,7 +93,9 @@ ordered_json to_json(const Measurement& m, bool on_front) {
     const Comparison& c = m.comparison;
     json["ms"] = m.milliseconds;
     json["fastest_ms"] = m.fastest;
-    json["runs"] = m.runs;
+    json["lower_quartile_ms"] = m.lower_quartile;
+    json["upper_quartile_ms"] = m.upper_quartile;
+    json["frames"] = m.times.size();
     json["bytes"] = m.bytes;
     json["psnr_db"] = finite_or_null(c.psnr_db);
     json["ssim"] = c.ssim;
@@ -119,8 +128,8 @@ void print(const Sweep& sweep, std::ostream& out) {
         << options.height << (options.eye_separation ? ", two eyes" : "") << ", "
         << grouped(sweep.triangles) << " triangles, " << grouped(sweep.fragments)
         << " fragments, up to " << sweep.most_layers << " in a pixel\n"
-        << "  " << sweep.device << " (driver " << sweep.driver << "), median of " << sweep.runs
-        << '\n';
+        << "  " << sweep.device << " (driver " << sweep.driver << "), median of " << sweep.frames
+        << " frames\n";
     print_settings(sweep, out);
     print_fewer_layers(sweep, out);
     print_exact_methods(sweep, out);
@@ -146,7 +155,9 @@ ordered_json to_json(const Sweep& sweep) {
     json["triangles"] = sweep.triangles;
     json["fragments"] = sweep.fragments;
     json["most_layers"] = sweep.most_layers;
-    json["runs"] = sweep.runs;
+    json["frames"] = sweep.frames;
+    json["equally_fast"] = equally_fast;
+    json["typical_spread"] = typical_spread(sweep.measurements);
     const std::vector<bool> front = pareto_front(sweep.measurements);
     json["settings"] = ordered_json::array();
     for (std::size_t i = 0; i < sweep.measurements.size(); ++i)
@@ -179,6 +190,8 @@ std::string to_csv(const Sweep& sweep) {
                                      "format",
                                      "ms",
                                      "fastest_ms",
+                                     "lower_quartile_ms",
+                                     "upper_quartile_ms",
                                      "bytes",
                                      "psnr_db",
                                      "ssim",

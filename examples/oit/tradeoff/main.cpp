@@ -36,7 +36,7 @@ void run(const oit::TradeoffOptions& options) {
                      .device = device.info().name,
                      .driver = device.info().driver,
                      .triangles = scene.triangles(),
-                     .runs = options.runs};
+                     .frames = options.frames};
     if (options.opaque_floor) oit::add_floor(scene);
     const oit::Frame frame = oit::make_frame(scene, options);
     const oit::Reference reference = reference_of(frame);
@@ -54,14 +54,17 @@ void run(const oit::TradeoffOptions& options) {
     if (settings.empty())
         throw support::InputError("the method " + std::string(sweep.left_out.front().method) +
                                   " cannot draw this: " + sweep.left_out.front().reason);
-    for (const oit::Setting& setting : settings) {
-        oit::Measurement measurement =
-            oit::measure(device, frame, setting, reference, options.runs);
-        if (pictures && measurement.drawn()) pictures->add(setting, measurement.image);
-        measurement.image = {};  // all of them may be more than memory holds
-        sweep.measurements.push_back(std::move(measurement));
-        print_progress(sweep.measurements.back(), sweep.measurements.size(), settings.size());
-    }
+    std::size_t done = 0;
+    support::Progress more_rounds("more rounds");
+    sweep.measurements = oit::measure_by_turns(
+        device, frame, reference, settings, options.frames,
+        [&](oit::Measurement& measurement) {
+            if (pictures && measurement.drawn())
+                pictures->add(measurement.setting, measurement.image);
+            measurement.image = {};  // all of them may be more than memory holds
+            print_progress(measurement, ++done, settings.size());
+        },
+        [&](double part) { more_rounds.update(part); });
     std::ranges::stable_sort(sweep.measurements, {}, [](const oit::Measurement& measurement) {
         return std::pair(!measurement.drawn(), measurement.milliseconds);
     });

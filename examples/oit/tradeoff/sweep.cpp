@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
+
+#include "stopwatch.hpp"
 
 namespace oit {
 namespace {
@@ -15,8 +18,16 @@ double accuracy(const Measurement& measurement) {
 }
 
 bool beats(const Measurement& a, const Measurement& b) {
-    return a.drawn() && a.milliseconds <= b.milliseconds && accuracy(a) >= accuracy(b) &&
-           (a.milliseconds < b.milliseconds || accuracy(a) > accuracy(b));
+    return a.drawn() && a.milliseconds <= equally_fast * b.milliseconds &&
+           accuracy(a) >= accuracy(b) &&
+           (equally_fast * a.milliseconds < b.milliseconds || accuracy(a) > accuracy(b));
+}
+
+constexpr std::uint32_t rounds = 3;
+
+// Frames of a round, the first having the most.
+std::uint32_t frames_in(std::uint32_t round, std::uint32_t frames) {
+    return frames / rounds + (round < frames % rounds ? 1 : 0);
 }
 
 // All fragments, stored as floats.
@@ -55,6 +66,32 @@ std::vector<LeftOut> left_out(const Frame& frame, std::span<const std::string_vi
         if (!reason.empty()) result.push_back({method.name, reason});
     }
     return result;
+}
+
+std::vector<Measurement> measure_by_turns(const cellist::Device& device, const Frame& frame,
+                                          const Reference& reference,
+                                          std::span<const Setting> settings, std::uint32_t frames,
+                                          const std::function<void(Measurement&)>& measured,
+                                          const std::function<void(double)>& progress) {
+    std::vector<Measurement> measurements;
+    for (const Setting& setting : settings) {
+        measurements.push_back(measure(device, frame, setting, reference, frames_in(0, frames)));
+        measured(measurements.back());
+    }
+    for (std::uint32_t round = 1; round < rounds && frames_in(round, frames) > 0; ++round)
+        for (std::size_t i = 0; i < measurements.size(); ++i) {
+            progress((round - 1 + static_cast<double>(i) / static_cast<double>(settings.size())) /
+                     (rounds - 1));
+            measure_again(device, frame, frames_in(round, frames), measurements[i]);
+        }
+    return measurements;
+}
+
+double typical_spread(std::span<const Measurement> measurements) {
+    std::vector<double> spreads;
+    for (const Measurement& measurement : measurements)
+        if (measurement.drawn()) spreads.push_back(measurement.spread());
+    return spreads.empty() ? 0 : support::median(std::move(spreads));
 }
 
 std::vector<bool> pareto_front(std::span<const Measurement> measurements) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,8 +25,8 @@ struct Sweep {
     std::string driver;
     std::uint64_t triangles = 0;
     std::uint64_t fragments = 0;
-    std::uint64_t most_layers = 0;  ///< in any pixel
-    std::uint32_t runs = 0;
+    std::uint64_t most_layers = 0;               ///< in any pixel
+    std::uint32_t frames = 0;                    ///< of each setting that are timed
     std::vector<Measurement> measurements = {};  ///< by time; failures last
     std::vector<LeftOut> left_out = {};
 
@@ -44,6 +45,20 @@ struct Sweep {
 /// From here on, in dB of PSNR, settings count as equally accurate: the error is less than a step of 16
 /// bits, and what is left is rounding.
 inline constexpr double psnr_enough = 96;
+
+/// Times count as equal up to this factor.
+inline constexpr double equally_fast = 1.03;
+
+/// Measures the settings by turns: a part of the frames of each, and then the next part, so that what slows
+/// the machine for a while does not fall to a few of them. `measured` gets what the first round has
+/// found of a setting, and the image; `progress` gets the finished part of the other rounds. Blocks.
+[[nodiscard]] std::vector<Measurement> measure_by_turns(
+    const cellist::Device& device, const Frame& frame, const Reference& reference,
+    std::span<const Setting> settings, std::uint32_t frames,
+    const std::function<void(Measurement&)>& measured, const std::function<void(double)>& progress);
+
+/// How far half of the times are from their median at most: that of the setting in the middle, as a part.
+[[nodiscard]] double typical_spread(std::span<const Measurement> measurements);
 
 /// Which measurements no other one beats: none is as fast and as accurate, and better in one of these.
 [[nodiscard]] std::vector<bool> pareto_front(std::span<const Measurement> measurements);

@@ -38,19 +38,18 @@ TradeoffOptions parse_tradeoff_options(int count, const char* const* arguments) 
     TradeoffOptions options;
     options.width = 640;
     options.height = 360;
-    std::string methods = "all", runs = std::to_string(options.runs), json, csv, html;
+    std::string methods = "all", frames = std::to_string(options.frames), json, csv, html;
     CLI::App app{
         "Draws a scene with every method and setting, and measures what each costs and how far it "
-        "is "
-        "from a rendering in double precision.",
+        "is from a rendering in double precision.",
         "cellist-tradeoff"};
     const auto add = [&](const char* name, std::string& value, const char* what, const char* type) {
         add_option(app, name, value, what, type);
     };
     const FrameArguments frame(app, options);
     add("--methods", methods, "methods to compare: all, exact, or names", "M,M,...");
-    add("--runs", runs, "timed frames of each setting, after those that warm up; times are medians",
-        "N");
+    add("--frames", frames,
+        "timed frames of each setting, in three rounds over all of them; times are medians", "N");
     add("--json", json, "write the figures to this file", "FILE");
     add("--csv", csv, "write a table with a line for each setting to this file", "FILE");
     add("--html", html, "write a report with plot and pictures to this file", "FILE");
@@ -62,7 +61,8 @@ TradeoffOptions parse_tradeoff_options(int count, const char* const* arguments) 
     }
     frame.read(options);
     options.methods = read_methods(methods);
-    options.runs = static_cast<std::uint32_t>(support::read_number("--runs", runs, 1, 1'000'000));
+    options.frames =
+        static_cast<std::uint32_t>(support::read_number("--frames", frames, 1, 1'000'000));
     options.json = read_path(json);
     options.csv = read_path(csv);
     options.html = read_path(html);

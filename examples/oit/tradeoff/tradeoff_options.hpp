@@ -13,7 +13,7 @@ namespace oit {
 /// What the command line of cellist-tradeoff asks for.
 struct TradeoffOptions : FrameOptions {
     std::vector<std::string_view> methods;  ///< names, by position in the table
-    std::uint32_t runs = 5;
+    std::uint32_t frames = 6;               ///< of each setting that are timed
     std::filesystem::path json = {};
     std::filesystem::path csv = {};
     std::filesystem::path html = {};
