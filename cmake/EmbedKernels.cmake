@@ -140,7 +140,8 @@ function(cellist_embed_kernels)
         if(NOT other EQUAL -1)
             list(GET files ${other} other)
             message(FATAL_ERROR
-                "${file} and ${other} would both be embedded as ${name}: give one of them another name")
+                "${file} and ${other} would both be embedded as ${name}: "
+                "give one of them another name")
         endif()
         list(APPEND names "${name}")
         list(APPEND files "${file}")

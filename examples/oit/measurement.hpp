@@ -40,8 +40,8 @@ struct Measurement {
                                   const Setting& setting, const Reference& reference,
                                   std::uint32_t frames);
 
-/// Draws a measured setting as often again, and adds the times; not where all its frames took ten seconds
-/// before. Blocks. What the device can no longer draw becomes a failure.
+/// Draws a measured setting again and adds the times, unless its frames have taken ten seconds
+/// already. Blocks. What the device can no longer draw becomes a failure.
 void measure_again(const cellist::Device& device, const Frame& frame, std::uint32_t frames,
                    Measurement& measurement);
 

@@ -42,8 +42,8 @@ std::string nearest_text(std::uint32_t layers) {
     return "the " + grouped(layers) + (layers == 1 ? " nearest layer" : " nearest layers");
 }
 
-// How far off the picture is, and how far from what the nearest layers make, where only these were asked
-// for.
+// How far off the picture is; and where only the nearest layers were asked for, how far from what
+// these make.
 void print_comparison(const Report& report, std::ostream& out) {
     const auto line = [&out](const std::string& name) -> std::ostream& {
         return out << "  " << std::left << std::setw(18) << name << std::right;

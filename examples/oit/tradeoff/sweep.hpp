@@ -49,15 +49,17 @@ inline constexpr double psnr_enough = 96;
 /// Times count as equal up to this factor.
 inline constexpr double equally_fast = 1.03;
 
-/// Measures the settings by turns: a part of the frames of each, and then the next part, so that what slows
-/// the machine for a while does not fall to a few of them. `measured` gets what the first round has
-/// found of a setting, and the image; `progress` gets the finished part of the other rounds. Blocks.
+/// Measures the settings by turns: a part of the frames of each, and then the next part, so that
+/// what slows the machine for a while does not fall to a few of them. `measured` gets what the first
+/// round has found of a setting, and the image; `progress` the finished part of the other rounds.
+/// Blocks.
 [[nodiscard]] std::vector<Measurement> measure_by_turns(
     const cellist::Device& device, const Frame& frame, const Reference& reference,
     std::span<const Setting> settings, std::uint32_t frames,
     const std::function<void(Measurement&)>& measured, const std::function<void(double)>& progress);
 
-/// How far half of the times are from their median at most: that of the setting in the middle, as a part.
+/// How far half of the times are from their median at most, as a part of it: in the setting that is
+/// in the middle.
 [[nodiscard]] double typical_spread(std::span<const Measurement> measurements);
 
 /// Which measurements no other one beats: none is as fast and as accurate, and better in one of these.

@@ -173,8 +173,8 @@ inline raster::View wide_view(int width, int height) {
     return view;
 }
 
-/// Sheets beside one another, each ten times as far away as the one before it and a third farther at its
-/// right side: from depth 1.01e-4 to 1.35e6.
+/// Sheets beside one another, each ten times as far away as the one before it and a third farther at
+/// its right side: from depth 1.01e-4 to 1.35e6.
 inline oit::Scene sheets_of_all_depths() {
     constexpr int count = 11;
     support::Mesh mesh;
