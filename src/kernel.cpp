@@ -114,6 +114,7 @@ std::string pointed_to(std::string type) {
 /// or the name of a struct. Vectors count as their scalars, and signs do not count. Empty for other
 /// types, which are not compared.
 std::string comparable(const std::string& type, const detail::Definitions& definitions) {
+    if (type.empty()) return {};
     for (const detail::RecordType& record : definitions.records)
         if (record.name == type) return type;
     const std::string scalar = type.substr(0, type.find_first_of("0123456789"));
@@ -241,13 +242,15 @@ struct Variant {
             (argument.is_container && argument.type != parameter.type))
             fail(parameter.is_container ? "lists of " + parameter.type : "a buffer",
                  argument.is_container ? "lists of " + argument.type : "a buffer");
-        const std::string given =
-            parameter.comparable.empty() ? "" : comparable(argument.type, definitions);
-        if (!given.empty() && given != parameter.comparable)
-            fail(parameter.type,
-                 argument.type + (argument.kind == Arguments::Kind::memory
-                                      ? " (pass Buffer::cl() to reinterpret its elements)"
-                                      : ""));
+        // Most types are written as the parameter's, which is soon told.
+        if (!parameter.comparable.empty() && argument.type != parameter.type) {
+            const std::string given = comparable(argument.type, definitions);
+            if (!given.empty() && given != parameter.comparable)
+                fail(parameter.type,
+                     argument.type + (argument.kind == Arguments::Kind::memory
+                                          ? " (pass Buffer::cl() to reinterpret its elements)"
+                                          : ""));
+        }
         if (argument.kind != Arguments::Kind::memory) return;
         const cl_context context = context_of(data);
         if (context == nullptr) fail("memory", "an empty buffer");

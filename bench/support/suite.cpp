@@ -12,7 +12,8 @@ Suite::Suite(const cellist::Device& device, Effort effort, cl_uint nodes, cl_uin
     if (effort == Effort::tiny) sampling_ = {.least = 1, .most = 1, .seconds = 0};
     // A GPU takes as many samples in less time.
     const bool gpu = (device.info().type & CL_DEVICE_TYPE_GPU) != 0;
-    if (effort == Effort::quick || gpu) sampling_.seconds = 0.15;
+    if (gpu) sampling_.seconds = 0.15;
+    if (effort == Effort::quick) sampling_.seconds = 0.1;
 }
 
 std::uint64_t Suite::copies(std::uint64_t bytes) const {

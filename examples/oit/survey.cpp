@@ -125,7 +125,8 @@ public:
         frame_.views = frame.views;
         source_.follow();
         source_.transform();
-        source_.prepare();
+        do source_.prepare();
+        while (!source_.complete());
         run();
         return read(Figures(figures_.download(), maxima(), sums()));
     }

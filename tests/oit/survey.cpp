@@ -120,6 +120,31 @@ TEST_CASE("bounds hold for samples and ranges of depth") {
     require_bounds(frame_of(scene, {.samples = 2, .depth_range = true}));
 }
 
+// Thin triangles across the picture: few fragments, and many blocks of pixels that they touch.
+oit::Scene splinters(int count) {
+    support::Mesh mesh;
+    for (int i = 0; i < count; ++i) {
+        const float part = static_cast<float>(i) / static_cast<float>(count);
+        const float y = 1.2F * part - 0.6F, z = 0.5F * std::sin(100 * part);
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        mesh.positions.insert(mesh.positions.end(),
+                              {{-0.9F, y, z}, {0.9F, y, z}, {0.9F, y + 2e-3F, z}});
+        mesh.normals.insert(mesh.normals.end(), 3, {0, 0, 1});
+        mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    return oit::scene_of(mesh, 0.3F);
+}
+
+TEST_CASE("a survey misses nothing where its first room is too small") {
+    const oit::Scene scene = splinters(10000);
+    const oit::Frame frame = frame_of(scene);
+    oit::Survey survey(device(), frame, layer_counts, epsilons);
+    const auto found = static_cast<double>(survey.measure(frame).fragments);
+    const auto count = static_cast<double>(oit::draw_reference(frame).fragments.size());
+    CHECK(count > 1000);
+    CHECK(std::abs(found - count) <= 1e-3 * count);
+}
+
 TEST_CASE("bounds hold at the limits of numbers") {
     for (const oit::SceneInfo& info : oit::scenes()) {
         if (!info.name.starts_with("extreme-")) continue;

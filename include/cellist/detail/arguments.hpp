@@ -38,6 +38,12 @@ public:
         bool is_container;  ///< the nodes of a container, which hold records of this type
     };
 
+    /// With room for what most kernels take.
+    Arguments() {
+        arguments_.reserve(24);
+        bytes_.reserve(384);
+    }
+
     template <class T>
     void add(const T& value) {
         static_assert(!std::is_same_v<T, bool>, "OpenCL C has no bool parameters: pass a cl_uint");
