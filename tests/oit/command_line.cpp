@@ -66,6 +66,7 @@ TEST_CASE("bad arguments are refused") {
              {"--reduce 2 --samples 4", "one sample"},
              {"--reduce 2 --budget 40dB", "--reduce"},
              {"--memory 1GiB --budget 40dB", "--memory"},
+             {"--budget 1/1", "every picture meets this"},
              {"--bogus", "--bogus"},
              {"another.obj", "another.obj"},
          })
@@ -155,6 +156,25 @@ TEST_CASE("the picture, the screen and the JSON agree, and pictures are equal in
     const std::string first = read_file(program.folder() / "a.png");
     CHECK(first.starts_with("\x89PNG"));
     CHECK(first == read_file(program.folder() / "b.png"));
+}
+
+TEST_CASE("the screen tells only what the method has") {
+    const Program program = oit_program();
+    const std::string run = "knot.obj --size 64x48 --frames 1 --reference --json a.json ";
+    const std::string lists = program.run(run).out;
+    CHECK(contains(lists, "nodes of 16 bytes"));
+    CHECK(contains(lists, "sort + blend"));
+    CHECK(contains(lists, "depth error"));
+    const std::string weighted = program.run(run + "--method weighted").out;
+    CHECK_FALSE(contains(weighted, "nodes"));
+    CHECK(contains(weighted, "not counted"));
+    CHECK(contains(weighted, "not compared"));
+    CHECK(contains(read_file(program.folder() / "a.json"), "\"node_bytes\": null"));
+    const std::string sliced = program.run(run + "--memory 1MiB").out;
+    CHECK_FALSE(contains(sliced, "sort + blend"));
+    CHECK(contains(sliced, "longest list"));
+    CHECK(contains(sliced, "not compared"));
+    CHECK(contains(read_file(program.folder() / "a.json"), "\"sort_blend\": null"));
 }
 
 TEST_CASE("without a reference, its figures are null") {
