@@ -35,7 +35,7 @@ void require_met(const oit::Frame& frame, const oit::Keeper& keeper, const oit::
         CHECK(comparison.max_abs_error <= budget.limit);
 }
 
-// All layers in float have drawn by turns with what was chosen; or are it, and as long as themselves.
+// All layers in float have drawn by turns with what was chosen, or are what was chosen.
 void require_times_against_chosen(const oit::Choice& choice) {
     const std::string exact = oit::text(oit::exact_setting(choice.setting.quality));
     for (const oit::Candidate& candidate : choice.candidates) {
