@@ -56,7 +56,7 @@ bool Budget::better(const PictureError& a, const PictureError& b) const {
 
 std::string Budget::text_of(const PictureError& error) const {
     if (kind == Kind::psnr) return formatted("%.1f dB", error.psnr_db());
-    return formatted(error.largest < 0.1 / 255 ? "%.4f/255" : "%.2f/255", 255 * error.largest);
+    return formatted(error.largest < 1.0 / 255 ? "%.4f/255" : "%.2f/255", 255 * error.largest);
 }
 
 std::string Budget::text() const {
@@ -77,7 +77,11 @@ Budget parse_budget(std::string_view text) {
     }
     const auto largest = fraction(text);
     if (!largest) refuse(text, std::string(expected));
-    if (*largest >= 1) refuse(text, "no error is larger than 1; a PSNR is written as 40dB");
+    if (*largest >= 1)
+        refuse(text,
+               "every picture meets this, for no error is larger than 1: expected less, such as "
+               "1/255, "
+               "or a PSNR such as 40dB");
     if (!(*largest > 0)) refuse(text, "an error above 0: no picture of floats is without");
     return {Budget::Kind::largest, *largest};
 }

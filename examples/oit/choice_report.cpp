@@ -3,23 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
-#include <limits>
 #include <ostream>
-#include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
+
+#include "number_text.hpp"
 
 namespace oit {
 namespace {
 
 using Fate = Candidate::Fate;
-
-std::string fixed(double value, int decimals) {
-    std::ostringstream out;
-    out << std::fixed << std::setprecision(decimals) << value;
-    return out.str();
-}
 
 std::string percent(double part) {
     return fixed(100 * part, 100 * part < 1 && part > 0 ? 3 : 1) + " %";
@@ -48,26 +44,26 @@ std::uint64_t median_layers(const SceneMeasure& scene) {
 
 std::string layers_text(const SceneMeasure& scene) {
     if (scene.fragments == 0) return "nothing transparent is to be seen";
-    return std::to_string(scene.fragments) + " fragments in " +
+    return counted(scene.fragments, "fragment") + " in " +
            percent(static_cast<double>(scene.nonempty_pixels) / static_cast<double>(scene.pixels)) +
-           " of the pixels, half of these with " + std::to_string(median_layers(scene)) +
-           " layers at most, the deepest with " + std::to_string(scene.longest);
+           " of the pixels, half of these with " + counted(median_layers(scene), "layer") +
+           " at most, the deepest with " + grouped(scene.longest);
 }
 
 std::string light_text(const SceneMeasure& scene) {
     std::string text;
     for (const SceneMeasure::Cut& cut : scene.cuts)
         if (cut.layers >= 2 && cut.layers < scene.longest)
-            text += (text.empty() ? "behind " : ", ") + std::to_string(cut.layers) + " layers " +
-                    percent(cut.light_behind);
-    return text;
+            text += (text.empty() ? "" : ", ") + percent(cut.light_behind) + " behind " +
+                    std::to_string(cut.layers) + (text.empty() ? " layers" : "");
+    return text.empty() ? "" : "in any pixel at most " + text;
 }
 
 std::string untold_text(const SceneMeasure& scene) {
     const auto& [of_float, of_24, of_16] = scene.pixels_untold;
-    return "not told by depths of float in " + std::to_string(of_float) +
-           " pixels, of 24 bits in " + std::to_string(of_24) + ", of 16 bits in " +
-           std::to_string(of_16);
+    if (of_float + of_24 + of_16 == 0) return "told in all pixels, by depths of 16 bits already";
+    return "not told in " + counted(of_float, "pixel") + " by depths of float, in " +
+           grouped(of_24) + " by 24 bits, in " + grouped(of_16) + " by 16 bits";
 }
 
 std::string reason(const Candidate& candidate) {
@@ -76,12 +72,14 @@ std::string reason(const Candidate& candidate) {
             return "chosen";
         case Fate::over_budget:
             return "over the budget";
+        case Fate::as_fast:
+            return "as fast, no more accurate";
         case Fate::slower:
-            return candidate.fastest_ms ? "slower" : "slower by far, not drawn";
+            return candidate.fastest_ms ? "slower" : "expected to be slower, not drawn";
         case Fate::not_needed:
-            return "gives up less than needed";
+            return "not needed";
         case Fate::failed:
-            return candidate.failure;
+            return "failed";
     }
     return {};
 }
@@ -92,26 +90,111 @@ const char* basis(bool bounded) {
                      "error included";
 }
 
-// A few of the others: what is faster and over the budget, and the next.
-void print_others(const Choice& choice, const Budget& budget, std::ostream& out) {
+// "41.3 dB at least" or "0.71/255 at most".
+std::string limit_text(const PictureError& error, const Budget& budget) {
+    return budget.text_of(error) + (budget.kind == Budget::Kind::psnr ? " at least" : " at most");
+}
+
+std::string other_order_text(const Choice& choice, const Budget& budget) {
+    return "in " + counted(choice.scene.pixels_untold[0], "pixel") +
+           " float does not tell the order of layers: with the other order there, " +
+           limit_text(choice.errors.all, budget);
+}
+
+// Where all layers in float were chosen, there is nothing to compare.
+std::string speed_text(const Choice& choice) {
+    const bool is_exact = text(choice.setting) == text(exact_setting(choice.setting.quality));
+    if (!choice.met || !choice.exact_times || is_exact) return {};
+    return "all layers in float take " + fixed(*choice.exact_times, 2) + " times as long";
+}
+
+// ---- the settings that were not chosen
+
+std::vector<const Candidate*> others_of(const Choice& choice) {
+    std::vector<const Candidate*> others;
+    for (const Candidate& candidate : choice.candidates)
+        if (text(candidate.setting) != text(choice.setting)) others.push_back(&candidate);
+    return others;
+}
+
+// A few: what is over the budget though faster, and what comes next.
+std::vector<const Candidate*> shown_of(const std::vector<const Candidate*>& others) {
     constexpr std::size_t most = 4;
-    const auto time = [](const Candidate& candidate) -> std::string {
-        if (candidate.times_leader) return fixed(*candidate.times_leader, 2) + " times";
-        return candidate.fastest_ms ? fixed(*candidate.fastest_ms, 2) + " ms" : "-";
-    };
-    const auto row = [&](const Candidate& candidate) {
-        out << "    " << std::left << std::setw(44) << short_text(candidate.setting) << std::right
-            << std::setw(11) << time(candidate) << std::setw(14)
-            << (candidate.error ? budget.text_of(*candidate.error) : "-") << "  "
-            << reason(candidate) << '\n';
-    };
-    std::size_t over = 0, slower = 0;
-    for (const Candidate& candidate : choice.candidates)
-        if (candidate.fate == Fate::over_budget && candidate.error && ++over <= most)
-            row(candidate);
-    for (const Candidate& candidate : choice.candidates)
-        if (candidate.fate == Fate::slower && candidate.fastest_ms && ++slower <= most)
-            row(candidate);
+    std::vector<const Candidate*> over, slower;
+    for (const Candidate* other : others) {
+        const bool keeps = other->fate == Fate::as_fast || other->fate == Fate::slower;
+        if (other->fate == Fate::over_budget && other->error && over.size() < most)
+            over.push_back(other);
+        else if (keeps && other->fastest_ms && slower.size() < most)
+            slower.push_back(other);
+    }
+    over.insert(over.end(), slower.begin(), slower.end());
+    return over;
+}
+
+std::string times_text(const Candidate& candidate) {
+    if (candidate.times_chosen) return fixed(*candidate.times_chosen, 2) + " times";
+    return candidate.times_leader ? "about " + fixed(*candidate.times_leader, 2) + " times" : "-";
+}
+
+// "12 not needed; 31 slower"
+std::string fates_text(const std::vector<const Candidate*>& candidates) {
+    std::vector<std::pair<std::string, int>> counts;
+    for (const Candidate* candidate : candidates) {
+        const std::string why = reason(*candidate);
+        const auto at = std::ranges::find(counts, why, &std::pair<std::string, int>::first);
+        if (at != counts.end())
+            ++at->second;
+        else
+            counts.emplace_back(why, 1);
+    }
+    std::string result;
+    for (const auto& [why, count] : counts)
+        result += (result.empty() ? "" : "; ") + std::to_string(count) + " " + why;
+    return result;
+}
+
+void print_others(const Choice& choice, const Budget& budget, std::ostream& out) {
+    std::vector<const Candidate*> others = others_of(choice);
+    const std::vector<const Candidate*> shown = shown_of(others);
+    for (const Candidate* other : shown)
+        out << "    " << std::left << std::setw(42) << short_text(other->setting) << std::right
+            << std::setw(17) << times_text(*other) << std::setw(12)
+            << (other->error ? budget.text_of(*other->error) : "-") << "  " << reason(*other)
+            << '\n';
+    std::erase_if(others, [&](const Candidate* other) {
+        return std::ranges::find(shown, other) != shown.end();
+    });
+    if (!others.empty())
+        out << "    ... and " << others.size() << " more: " << fates_text(others)
+            << " (--json FILE has all)\n";
+}
+
+// ---- how the budget was kept
+
+std::string kept_text(const Budget& budget, const KeptBudget& kept) {
+    const std::string worst = limit_text(kept.worst().told, budget);
+    return grouped(kept.checked()) + " of " + counted(kept.frames(), "frame") + " checked, " +
+           grouped(kept.chosen_again()) + " chosen again, " + grouped(kept.over().size()) +
+           " over the budget; the worst " +
+           (budget.kind == Budget::Kind::psnr ? "has " : "is off by ") + worst;
+}
+
+// Whether it is for the setting, or for what can be proven of any.
+std::string not_met_reason(const Choice& choice, const Budget& budget) {
+    if (choice.met || budget.met_by(choice.scene.exact)) return "no setting meets the budget";
+    return (budget.kind == Budget::Kind::psnr ? "no more than " : "no less than ") +
+           budget.text_of(choice.scene.exact) +
+           " can be proven of any picture of this frame, for floats are rounded; "
+           "the picture may be better";
+}
+
+std::string not_met_text(const Choice& choice, const Budget& budget, const KeptBudget& kept) {
+    std::string text = not_met_reason(choice, budget);
+    if (kept.over().size() < kept.frames())
+        text += "; over it in " + counted(kept.over().size(), "frame") + ", first in frame " +
+                grouped(kept.first_over()) + " of " + grouped(kept.frames());
+    return text;
 }
 
 nlohmann::ordered_json json_of(const PictureError& error) {
@@ -124,56 +207,51 @@ nlohmann::ordered_json json_of(const PictureError& error) {
 
 void KeptBudget::add(const Keeper::Drawn& drawn, double time, const Budget& budget) {
     ++frames_;
+    if (drawn.changed) ++changed_;
     if (drawn.checked) ++checked_;
     if (drawn.chosen_again) ++chosen_again_;
     if (!drawn.errors) return;
-    if (!budget.met_by(drawn.errors->told)) over_.push_back(time);
+    if (!budget.met_by(drawn.errors->told)) {
+        if (over_.empty()) first_over_ = frames_;
+        over_.push_back(time);
+    }
     if (budget.better(worst_.told, drawn.errors->told)) worst_ = *drawn.errors;
 }
 
 void print(const Choice& choice, const Budget& budget, const KeptBudget& kept, std::ostream& out) {
-    const auto line = [&out](const std::string& name) -> std::ostream& {
-        return out << "  " << std::left << std::setw(18) << name << std::right;
+    const auto line = [&out](const std::string& name, const std::string& what) {
+        if (!what.empty())
+            out << "  " << std::left << std::setw(18) << name << std::right << what << '\n';
     };
     const SceneMeasure& scene = choice.scene;
-    line("budget") << (budget.kind == Budget::Kind::psnr ? "PSNR of at least "
-                                                         : "errors of at most ")
-                   << budget.text() << '\n';
-    line("layers") << layers_text(scene) << '\n';
-    if (scene.fragments > 0)
-        line("opacity") << fixed(static_cast<double>(scene.least_alpha), 3) << " to "
-                        << fixed(static_cast<double>(scene.greatest_alpha), 3) << '\n';
-    if (const std::string light = light_text(scene); !light.empty())
-        line("light that passes") << light << '\n';
-    line("order") << untold_text(scene) << '\n';
-    line(choice.met ? "chosen" : "best there is")
-        << short_text(choice.setting) << ": " << fixed(choice.fastest_ms, 2) << " ms\n";
-    line("error") << budget.text_of(choice.errors.told)
-                  << (budget.kind == Budget::Kind::psnr ? " at least, " : " at most, ")
-                  << basis(choice.bounded) << '\n';
-    if (scene.pixels_untold[0] > 0)
-        line("") << "where float does not tell the order, it may be the other: "
-                 << budget.text_of(choice.errors.all) << " then\n";
-    line("speed") << "all layers in float take " << fixed(choice.exact_ms, 2) << " ms, "
-                  << fixed(choice.exact_ms / choice.fastest_ms, 2) << " times as long\n";
-    line("others") << choice.candidates.size() << " settings, found with " << choice.draws
-                   << " frames in " << fixed(choice.took_ms / 1000, 1) << " s\n";
+    const bool is_psnr = budget.kind == Budget::Kind::psnr;
+    line("budget", (is_psnr ? "PSNR of at least " : "errors of at most ") + budget.text());
+    line("layers", layers_text(scene));
+    if (scene.fragments > 0) {
+        line("opacity", fixed(static_cast<double>(scene.least_alpha), 3) + " to " +
+                            fixed(static_cast<double>(scene.greatest_alpha), 3));
+        line("light that passes", light_text(scene));
+        line("order of layers", untold_text(scene));
+    }
+    line(choice.met ? "chosen" : "best there is", short_text(choice.setting) + ": " +
+                                                      fixed(choice.fastest_ms, 2) +
+                                                      " ms (the least in the search)");
+    line("error", limit_text(choice.errors.told, budget) + ", " + basis(choice.bounded));
+    if (scene.pixels_untold[0] > 0) line("", other_order_text(choice, budget));
+    line("speed", speed_text(choice));
+    line("search", counted(choice.candidates.size(), "setting") + ", " +
+                       counted(choice.draws, "frame") + ", " + fixed(choice.took_ms / 1000, 1) +
+                       " s; times within 3 % count as equal");
+    line("others", std::string(choice.met ? "time against the chosen one, and " : "") +
+                       (is_psnr ? "PSNR at least" : "error at most"));
     print_others(choice, budget, out);
-    if (kept.checked() > 0)
-        line("kept") << kept.checked() << " of " << kept.frames() << " frames checked, "
-                     << kept.chosen_again() << " chosen again, " << kept.over().size()
-                     << " over the budget; the worst is off by "
-                     << budget.text_of(kept.worst().told) << '\n';
-    if (!kept.met())
-        line("NOT MET") << "no setting meets the budget"
-                        << (kept.frames() > 1 && kept.over().size() < kept.frames()
-                                ? " at time " + fixed(kept.over().front(), 3)
-                                : std::string())
-                        << '\n';
+    if (kept.changed() > 0) line("kept", kept_text(budget, kept));
+    if (!kept.met()) line("NOT MET", not_met_text(choice, budget, kept));
 }
 
 nlohmann::ordered_json json_of(const Choice& choice, const Budget& budget, const KeptBudget& kept) {
-    constexpr const char* fates[] = {"chosen", "over budget", "slower", "not needed", "failed"};
+    constexpr const char* fates[] = {"chosen", "over budget", "as fast",
+                                     "slower", "not needed",  "failed"};
     nlohmann::ordered_json json;
     json["budget"] = budget.text();
     json["met"] = kept.met();
@@ -182,7 +260,8 @@ nlohmann::ordered_json json_of(const Choice& choice, const Budget& budget, const
     json["error_with_any_order"] = json_of(choice.errors.all);
     json["bounded"] = choice.bounded;
     json["fastest_ms"] = choice.fastest_ms;
-    json["exact_ms"] = choice.exact_ms;
+    json["exact_times"] = nullptr;
+    if (choice.exact_times) json["exact_times"] = *choice.exact_times;
     json["draws"] = choice.draws;
     json["took_ms"] = choice.took_ms;
     json["scene"] = {{"pixels", choice.scene.pixels},
@@ -201,14 +280,13 @@ nlohmann::ordered_json json_of(const Choice& choice, const Budget& budget, const
         if (candidate.error) entry["error"] = json_of(*candidate.error);
         if (candidate.fastest_ms) entry["fastest_ms"] = *candidate.fastest_ms;
         if (candidate.times_leader) entry["times_leader"] = *candidate.times_leader;
+        if (candidate.times_chosen) entry["times_chosen"] = *candidate.times_chosen;
         if (!candidate.failure.empty()) entry["failure"] = candidate.failure;
         json["candidates"].push_back(entry);
     }
-    json["frames"] = {{"drawn", kept.frames()},
-                      {"checked", kept.checked()},
-                      {"chosen_again", kept.chosen_again()},
-                      {"over_at", kept.over()},
-                      {"worst", json_of(kept.worst().told)}};
+    json["frames"] = {{"drawn", kept.frames()},    {"changed", kept.changed()},
+                      {"checked", kept.checked()}, {"chosen_again", kept.chosen_again()},
+                      {"over_at", kept.over()},    {"worst", json_of(kept.worst().told)}};
     return json;
 }
 

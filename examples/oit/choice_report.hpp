@@ -19,15 +19,19 @@ public:
     /// No frame that was checked is over the budget.
     [[nodiscard]] bool met() const { return over_.empty(); }
     [[nodiscard]] std::uint32_t frames() const { return frames_; }
+    /// Frames that show another moment than the one before.
+    [[nodiscard]] std::uint32_t changed() const { return changed_; }
     [[nodiscard]] std::uint32_t checked() const { return checked_; }
     [[nodiscard]] std::uint32_t chosen_again() const { return chosen_again_; }
     /// Times of the frames that no setting brings within the budget.
     [[nodiscard]] const std::vector<double>& over() const { return over_; }
+    /// The first of these frames, counted from 1; 0 where there is none.
+    [[nodiscard]] std::uint32_t first_over() const { return first_over_; }
     /// The errors of the least accurate frame that was checked.
     [[nodiscard]] const PictureErrors& worst() const { return worst_; }
 
 private:
-    std::uint32_t frames_ = 0, checked_ = 0, chosen_again_ = 0;
+    std::uint32_t frames_ = 0, changed_ = 0, checked_ = 0, chosen_again_ = 0, first_over_ = 0;
     std::vector<double> over_;
     PictureErrors worst_;
 };

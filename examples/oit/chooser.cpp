@@ -21,7 +21,6 @@ constexpr double family_margin = 1.2;
 // After two draws, a setting is out if it is slower by this; with more draws, by less.
 constexpr double first_margin = 1.3;
 constexpr int rounds = 3;
-constexpr double as_fast = 1.03;
 // A pass that stores nothing takes this part of one that stores at least: its triangles are the same.
 constexpr double part_of_pass = 0.3;
 
@@ -79,6 +78,7 @@ struct Chooser::Contender {
     Renderer renderer;
     PictureErrors errors = {};
     support::Least least = {};
+    std::vector<double> round_ms = {};  ///< the least until the end of each round of the play-off
 
     Contender(const cellist::Device& device, const Frame& of, const Candidate& drawn)
         : candidate(drawn),
@@ -105,9 +105,9 @@ public:
         // The exact picture, of which all others are a trade, then all methods at their simplest, then
         // the other settings of those that are fast enough.
         const Setting exact = exact_setting(frame_.quality);
-        draw(exact, {});
+        draw(exact, exact.method->bound(choice_.scene, exact.quality));
+        exact_ = contenders_.empty() ? fallback_ : contenders_.front();
         measure_pass();
-        choice_.exact_ms = family_ms_[exact.method->name];
         std::vector<Setting> leaders{exact}, others;
         for (const Setting& setting : settings)
             if (setting.method == leaders.back().method || setting.method == exact.method)
@@ -123,7 +123,7 @@ public:
         return std::move(choice_);
     }
 
-    std::unique_ptr<Contender> take_winner() { return std::move(winner_); }
+    std::shared_ptr<Contender> take_winner() { return std::move(winner_); }
 
 private:
     // ---- one setting
@@ -165,10 +165,10 @@ private:
 
     void draw(const Setting& setting, const std::optional<PictureError>& bound) {
         Candidate candidate{.setting = setting};
-        std::unique_ptr<Contender> contender;
+        std::shared_ptr<Contender> contender;
         bool slower = false;
         try {
-            contender = std::make_unique<Contender>(device_, frame_, candidate);
+            contender = std::make_shared<Contender>(device_, frame_, candidate);
             contender->renderer.warm_up();
             slower = is_slower(*contender, first_margin);
         } catch (const std::exception& error) {
@@ -185,9 +185,7 @@ private:
             ++met_[{setting.method->name, series_of(setting)}];
             contenders_.push_back(std::move(contender));
             update_best();
-            drop([&](Contender& other) {
-                return is_out(other, first_margin) && is_slower(other, first_margin);
-            });
+            drop_slower();
             return;
         }
         leave(*contender, Fate::over_budget);
@@ -224,26 +222,27 @@ private:
         leader->least.add(other.ms());
         contender.candidate.times_leader = own.ms() / other.ms();
         best_ms_ = std::min(best_ms_, other.ms());
+        note(*leader, other.ms());
         note(contender, own.ms());
         return own.ms() > margin * other.ms() && is_out(contender, margin);
     }
 
-    // Of the first setting.
     void measure_pass() {
-        Contender* first = contenders_.empty() ? fallback_.get() : contenders_.front().get();
-        if (!first) return;
+        if (!exact_) return;
         support::Least pass;
-        for (int i = 0; i < 3; ++i) pass.add(first->renderer.draw_by_pass().raster_insert_ms);
-        pass_ms_ = std::min(pass.ms(), first->ms());
+        for (int i = 0; i < 3; ++i) pass.add(exact_->renderer.draw_by_pass().raster_insert_ms);
+        pass_ms_ = std::min(pass.ms(), exact_->ms());
     }
 
-    // What the method takes at least, and what it gains from packing.
+    // What the method takes at least, and what it gains from packing. The first draws of all are
+    // slow, so the least of all draws in float counts.
     void note(const Contender& contender, double ms) {
         const Setting& setting = contender.candidate.setting;
         const auto [family, is_new] = family_ms_.try_emplace(setting.method->name, ms);
         family->second = std::min(family->second, ms);
-        if (setting.method->name == "linked" && setting.quality.format != NodeFormat::float32)
-            packing_gain_ = std::max(packing_gain_, choice_.exact_ms / ms);
+        if (exact_ && setting.method->name == "linked" &&
+            setting.quality.format != NodeFormat::float32)
+            packing_gain_ = std::max(packing_gain_, exact_->ms() / ms);
     }
 
     // The fastest comes first.
@@ -265,10 +264,12 @@ private:
         choice_.candidates.push_back(contender.candidate);
     }
 
-    void drop(const auto& is_slow) {
-        std::erase_if(contenders_, [&](const std::unique_ptr<Contender>& contender) {
-            if (!is_slow(*contender)) return false;
-            leave(*contender, Fate::slower);
+    // All layers in float are kept for the play-off.
+    void drop_slower() {
+        std::erase_if(contenders_, [&](const std::shared_ptr<Contender>& contender) {
+            if (!is_out(*contender, first_margin) || !is_slower(*contender, first_margin))
+                return false;
+            if (contender != exact_) leave(*contender, Fate::slower);
             return true;
         });
     }
@@ -276,51 +277,83 @@ private:
     // Those that are left draw by turns, so that what else the machine does disturbs all alike.
     // Times from before do not count: they were taken at other moments, and not equally often.
     void play_off() {
+        bring_back_exact();
         if (contenders_.size() < 2) return;
         for (const auto& contender : contenders_) contender->least = {};
         for (int round = 0; round < rounds && contenders_.size() > 1; ++round) {
-            const int draws = draws_of(best_ms_, 2 << round);
-            for (int turn = 0; turn < draws; ++turn)
-                for (const auto& contender : contenders_) {
-                    contender->least.add(contender->renderer.draw());
-                    ++choice_.draws;
-                }
+            draw_by_turns(draws_of(best_ms_, std::max(3, 2 << round)));
             update_best();
-            for (const auto& contender : contenders_)
-                contender->candidate.times_leader = contender->ms() / best_ms_;
             const double margin = 1 + (first_margin - 1) / (2 << round);
-            drop([&](const Contender& contender) { return is_out(contender, margin); });
+            const auto out = std::ranges::find_if(
+                contenders_, [&](const auto& contender) { return is_out(*contender, margin); });
+            outpaced_.insert(outpaced_.end(), out, contenders_.end());
+            contenders_.erase(out, contenders_.end());
         }
+    }
+
+    // What others gain is told against all layers in float, so these draw one round at least, even
+    // where they were found to be slower before.
+    void bring_back_exact() {
+        if (!contenders_.empty() && exact_ && budget_.met_by(exact_->errors.told) &&
+            std::ranges::find(contenders_, exact_) == contenders_.end())
+            contenders_.push_back(exact_);
+    }
+
+    void draw_by_turns(int draws) {
+        for (int turn = 0; turn < draws; ++turn)
+            for (const auto& contender : contenders_) {
+                contender->least.add(contender->renderer.draw());
+                ++choice_.draws;
+            }
+        for (const auto& contender : contenders_) contender->round_ms.push_back(contender->ms());
     }
 
     void finish() {
         choice_.met = !contenders_.empty();
-        if (choice_.met) {
-            const auto is_worse = [&](const auto& a, const auto& b) {
-                return budget_.better(b->errors.told, a->errors.told);
-            };
-            const auto tied = std::ranges::partition(
-                contenders_, [&](const auto& contender) { return !is_out(*contender, as_fast); });
-            winner_ = std::move(*std::max_element(contenders_.begin(), tied.begin(), is_worse));
-            for (const auto& contender : contenders_)
-                if (contender) leave(*contender, Fate::slower);
-            winner_->candidate.fate = Fate::chosen;
-            winner_->candidate.fastest_ms = winner_->ms();
-            choice_.candidates.push_back(winner_->candidate);
-        } else {
-            if (!fallback_)
-                throw support::InputError("no setting can be drawn: " +
-                                          choice_.candidates.front().failure);
+        if (choice_.met)
+            crown();
+        else if (fallback_)
             winner_ = std::move(fallback_);
-        }
+        else
+            throw support::InputError("no setting can be drawn: " +
+                                      choice_.candidates.front().failure);
         choice_.setting = winner_->candidate.setting;
         choice_.errors = winner_->errors;
         choice_.bounded = winner_->candidate.bounded;
         choice_.fastest_ms = winner_->ms();
+        if (exact_ && (exact_ == winner_ || !exact_->round_ms.empty()))
+            choice_.exact_times = times_winner(*exact_);
         std::ranges::stable_sort(choice_.candidates, {}, [](const Candidate& candidate) {
+            if (candidate.times_chosen) return *candidate.times_chosen;
             return candidate.times_leader.value_or(
                 candidate.fastest_ms ? 1.0 : std::numeric_limits<double>::infinity());
         });
+    }
+
+    // Of those that are as fast as the fastest, the most accurate wins.
+    void crown() {
+        const auto is_worse = [&](const auto& a, const auto& b) {
+            return budget_.better(b->errors.told, a->errors.told);
+        };
+        const auto slower = std::ranges::find_if(
+            contenders_, [&](const auto& contender) { return is_out(*contender, as_fast); });
+        winner_ = *std::max_element(contenders_.begin(), slower, is_worse);
+        outpaced_.insert(outpaced_.end(), contenders_.begin(), contenders_.end());
+        for (const auto& contender : outpaced_) {
+            contender->candidate.times_chosen = times_winner(*contender);
+            leave(*contender, contender == winner_ ? Fate::chosen : fate_beside_winner(*contender));
+        }
+    }
+
+    // In the rounds that both drew in.
+    [[nodiscard]] double times_winner(const Contender& contender) const {
+        const std::size_t drawn = contender.round_ms.size();
+        return drawn == 0 ? 1 : contender.ms() / winner_->round_ms.at(drawn - 1);
+    }
+
+    [[nodiscard]] Fate fate_beside_winner(const Contender& contender) const {
+        const bool more_accurate = budget_.better(contender.errors.told, winner_->errors.told);
+        return times_winner(contender) <= as_fast && !more_accurate ? Fate::as_fast : Fate::slower;
     }
 
     const cellist::Device& device_;
@@ -328,9 +361,11 @@ private:
     const Budget& budget_;
     Survey& survey_;
     Choice choice_;
-    std::vector<std::unique_ptr<Contender>> contenders_;  // within the budget
-    std::unique_ptr<Contender> fallback_;                 // the most accurate of the others
-    std::unique_ptr<Contender> winner_;
+    std::vector<std::shared_ptr<Contender>> contenders_;  // within the budget
+    std::vector<std::shared_ptr<Contender>> outpaced_;    // in the play-off
+    std::shared_ptr<Contender> fallback_;                 // the most accurate of the others
+    std::shared_ptr<Contender> exact_;                    // all layers in float, where drawn
+    std::shared_ptr<Contender> winner_;
     double best_ms_ = std::numeric_limits<double>::infinity();
     double packing_gain_ = 1;  // of `linked`: how many times as fast it gets
     double pass_ms_ = 0;       // to draw and store all fragments once

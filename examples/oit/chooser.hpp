@@ -20,6 +20,7 @@ struct Candidate {
     enum class Fate {
         chosen,
         over_budget,
+        as_fast,     ///< as the chosen one, within Chooser::as_fast, and no more accurate
         slower,      ///< than the chosen one
         not_needed,  ///< a setting that gives up more meets the budget
         failed,      ///< the device cannot draw it
@@ -32,6 +33,8 @@ struct Candidate {
     std::optional<double> fastest_ms = {};  ///< a frame, where it was drawn
     /// As long as the leader of that moment took, by turns: says more than times of other moments.
     std::optional<double> times_leader = {};
+    /// As long as the chosen one took, of those that drew by turns with it in the end.
+    std::optional<double> times_chosen = {};
     std::string failure = {};
 };
 
@@ -42,7 +45,8 @@ struct Choice {
     PictureErrors errors;   ///< its errors, at most
     bool bounded = false;   ///< as Candidate::bounded
     double fastest_ms = 0;  ///< of a frame
-    double exact_ms = 0;    ///< of all layers in float with the method `linked`
+    /// As long as this takes exact_setting(), by turns: 1 where that was chosen.
+    std::optional<double> exact_times = {};
     SceneMeasure scene;
     std::vector<Candidate> candidates;  ///< the fastest first, then those that were not drawn
     std::uint32_t draws = 0;  ///< frames that were drawn to find it, the survey's included
@@ -55,6 +59,8 @@ struct Choice {
 /// within 3 % of the fastest is as fast; of these, the most accurate is chosen.
 class Chooser {
 public:
+    static constexpr double as_fast = 1.03;
+
     /// Refers to the device and the frame, which must outlive it. Samples and how depths are scaled are
     /// the frame's; its format, size, layers and epsilon do not matter.
     Chooser(const cellist::Device& device, const Frame& frame, const Budget& budget);
@@ -81,7 +87,7 @@ private:
     const Frame& frame_;
     Budget budget_;
     Survey survey_;
-    std::unique_ptr<Contender> winner_;
+    std::shared_ptr<Contender> winner_;
 };
 
 }  // namespace oit

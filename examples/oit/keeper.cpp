@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace oit {
 namespace {
@@ -31,9 +32,10 @@ bool Keeper::has_changed() const {
 }
 
 Keeper::Drawn Keeper::draw() {
-    Drawn drawn;
+    Drawn drawn{.changed = has_changed()};
+    drawn.checked = std::exchange(is_first_, false) && !drawn.changed;
     const Frame& frame = chooser_.frame();
-    if (has_changed()) {
+    if (drawn.changed) {
         now_.time = frame.time;
         now_.views = frame.views;
         errors_.reset();

@@ -18,6 +18,8 @@ public:
     /// A frame that was drawn.
     struct Drawn {
         double frame_ms = 0;
+        bool changed = false;  ///< another moment than that of the last frame
+        /// Surveyed for this frame: behind it, or, of the first, when the setting was chosen.
         bool checked = false;
         bool chosen_again = false;
         /// Where this moment was checked, now or before.
@@ -43,6 +45,7 @@ private:
     Chooser chooser_;
     Budget budget_;
     std::uint32_t check_every_;
+    bool is_first_ = true;                      ///< the next frame
     std::uint32_t unchecked_ = 0;               ///< frames since the last check
     std::optional<PictureErrors> errors_ = {};  ///< of this moment, where they are known
     Choice choice_;

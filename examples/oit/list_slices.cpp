@@ -1,7 +1,7 @@
 #include "list_slices.hpp"
 
 #include <algorithm>
-#include <vector>
+#include <optional>
 
 #include "input_error.hpp"
 #include "oit_kernels.hpp"
@@ -9,14 +9,13 @@
 namespace oit {
 namespace {
 
-// The most fragments in a pixel. Blocks.
-std::uint64_t longest_list(FragmentSource& source) {
+// Of all fragments, in one pass that only counts. Blocks.
+cellist::Lengths count_fragments(FragmentSource& source) {
     cellist::Buffer<cl_uint> counts(source.device(), source.frame().pixels());
     raster::Pass pass = source.pass(kernels::count_cl, "count.cl");
     counts.fill(0);
     source.draw(pass, counts);
-    const std::vector<cl_uint> lengths = counts.download();
-    return *std::max_element(lengths.begin(), lengths.end());
+    return cellist::Lengths(counts.download());
 }
 
 template <class Node>
@@ -55,7 +54,12 @@ public:
     [[nodiscard]] std::uint64_t device_bytes() const override {
         return fragments_.pool_bytes() + count_bytes_;
     }
+    [[nodiscard]] bool blends_slices() const override { return true; }
     [[nodiscard]] std::uint32_t slices() const override { return count_; }
+    // The lists are those of the last slice, so fragments are counted anew.
+    [[nodiscard]] std::optional<cellist::Lengths> lengths() const override {
+        return count_fragments(source_);
+    }
 
 private:
     [[nodiscard]] std::uint64_t budget() const { return *source_.frame().memory_bytes; }
@@ -78,7 +82,7 @@ private:
     }
 
     [[noreturn]] void refuse() {
-        const std::uint64_t longest = longest_list(source_);
+        const std::uint64_t longest = count_fragments(source_).longest;
         throw support::InputError(
             "--memory of " + std::to_string(budget()) +
             " bytes is too little for this frame: the least that works is " +

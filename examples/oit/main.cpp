@@ -121,13 +121,15 @@ void describe(oit::Report& report, const oit::Scene& scene, const cellist::Devic
 
 void write(oit::Report& report, const oit::Frame& frame, const oit::Renderer& renderer) {
     const oit::Options& options = report.options;
-    report.node_bytes = 4 * renderer.layout().words;
+    if (oit::method_named(options.method).has_nodes)
+        report.node_bytes = 4 * renderer.layout().words;
     report.colour_max = renderer.needs().colour_max;
     const std::vector<cl_float4> image = renderer.image();
     report.pixels_nan = oit::count_nan(image);
     support::write_png(options.out, oit::side_by_side(image, frame), oit::picture_width(frame),
                        frame.height());
     report.lengths = renderer.method().lengths();
+    report.blends_slices = renderer.method().blends_slices();
     report.slices = renderer.method().slices();
     report.method_bytes = renderer.method().device_bytes();
     report.device_bytes = renderer.device_bytes();

@@ -40,6 +40,8 @@ public:
     /// What the method keeps on the device, beside what the source has.
     [[nodiscard]] virtual std::uint64_t device_bytes() const = 0;
 
+    /// The image is blended in store() already, slice by slice.
+    [[nodiscard]] virtual bool blends_slices() const { return false; }
     /// Parts of the image that the last frame was built in, one after the other.
     [[nodiscard]] virtual std::uint32_t slices() const { return 1; }
     /// Fragments in each pixel, where the method has all of them. Blocks.
@@ -65,6 +67,7 @@ struct MethodInfo {
     int position;              ///< in the table: in steps of 10, so that a method fits between two
     bool exact;                ///< the image of all fragments, up to rounding
     bool cuts = false;         ///< tried with fewer layers and early ends
+    bool has_nodes = true;     ///< keeps fragments as nodes, in Quality::format
     /// What it can be compiled for (layers, trials, steps ...), smallest first: Quality::size. Nothing
     /// where there is no such choice.
     std::span<const std::uint32_t> sizes = {};

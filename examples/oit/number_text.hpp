@@ -19,6 +19,11 @@ namespace oit {
     return digits;
 }
 
+/// "1 pixel", "1,234 pixels"
+[[nodiscard]] inline std::string counted(std::uint64_t count, const std::string& what) {
+    return grouped(count) + " " + what + (count == 1 ? "" : "s");
+}
+
 /// The fewest digits that are read as this number again: 0.35
 [[nodiscard]] std::string shortest(std::floating_point auto value) {
     std::array<char, 32> digits;

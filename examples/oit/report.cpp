@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <iomanip>
 #include <ostream>
 
@@ -38,16 +39,13 @@ std::string early_end_text(const Report& report) {
     return "linear colours off by " + fixed(255 * bound, 4) + " / 255 at most";
 }
 
-std::string nearest_text(std::uint32_t layers) {
-    return "the " + grouped(layers) + (layers == 1 ? " nearest layer" : " nearest layers");
-}
+std::string nearest_text(std::uint32_t layers) { return "the " + counted(layers, "nearest layer"); }
+
+using Line = std::function<std::ostream&(const std::string& name)>;
 
 // How far off the picture is; and where only the nearest layers were asked for, how far from what
 // these make.
-void print_comparison(const Report& report, std::ostream& out) {
-    const auto line = [&out](const std::string& name) -> std::ostream& {
-        return out << "  " << std::left << std::setw(18) << name << std::right;
-    };
+void print_comparison(const Report& report, const Line& line) {
     const Comparison& c = *report.comparison;
     line("PSNR") << fixed(c.psnr_db, 1) << " dB against all layers in double precision\n";
     if (report.nearest_comparison)
@@ -55,24 +53,92 @@ void print_comparison(const Report& report, std::ostream& out) {
                  << nearest_text(*report.options.quality.layers) << " in double precision\n";
     line("SSIM") << fixed(c.ssim, 6) << '\n';
     line("largest error") << fixed(255 * c.max_abs_error, 4) << " / 255\n";
-    line("over 1/255") << grouped(c.pixels_over) << " of " << grouped(c.pixels) << " pixels, "
+    line("over 1/255") << grouped(c.pixels_over) << " of " << counted(c.pixels, "pixel") << ", "
                        << grouped(c.pixels_explained)
                        << " explained by depths closer than 2^-20 of each other\n";
-    if (!c.has_depths) return;
+    if (!c.has_depths) {
+        line("counts, depths") << "not compared: "
+                               << (report.blends_slices ? "lists are there a slice at a time"
+                                                        : "the method does not keep all fragments")
+                               << '\n';
+        return;
+    }
     line("fragment counts") << (c.pixels_with_other_count == 0
                                     ? std::string("equal in every pixel")
-                                    : "differ in " + grouped(c.pixels_with_other_count) +
-                                          " pixels, reference has " + grouped(c.fragments) +
-                                          " in all")
+                                    : "differ in " + counted(c.pixels_with_other_count, "pixel") +
+                                          ", reference has " + grouped(c.fragments) + " in all")
                             << '\n';
     line("depth error") << fixed(c.max_depth_error * (1 << 24), 2)
                         << " * 2^-24 at most (bound: 8)\n";
 }
 
+void print_method(const Report& report, const Line& line) {
+    const Options& options = report.options;
+    line("method") << method_text({&method_named(options.method), options.quality}) << ", "
+                   << (report.node_bytes
+                           ? "nodes of " + std::to_string(*report.node_bytes) + " bytes, "
+                           : "")
+                   << counted(static_cast<std::uint64_t>(options.quality.samples), "sample")
+                   << " a pixel\n";
+    if (options.quality.reduce > 1)
+        line("reduced") << "transparent surfaces drawn with " << options.quality.reduce
+                        << " times fewer pixels a side\n";
+}
+
+void print_fragments(const Report& report, const Line& line) {
+    line("triangles") << grouped(report.triangles) << dropped_text(report.drops) << '\n';
+    if (!report.lengths) {
+        // A choice says how many there are.
+        if (!report.choice)
+            line("fragments") << "not counted: the method does not keep all of them\n";
+        return;
+    }
+    line("fragments") << grouped(report.lengths->total) << '\n';
+    line("non-empty pixels") << grouped(report.lengths->nonempty_cells) << '\n';
+    line("longest list") << grouped(report.lengths->longest) << '\n';
+}
+
+void print_memory(const Report& report, const Line& line) {
+    line("memory") << megabytes(report.method_bytes) << " MB of the method, "
+                   << megabytes(report.device_bytes) << " MB in all\n";
+    if (report.options.memory_bytes)
+        line("slices") << report.slices << ", " << grouped(report.method_bytes) << " of "
+                       << grouped(*report.options.memory_bytes) << " bytes used\n";
+}
+
+void print_times(const Report& report, const Line& line) {
+    const PassTimes& passes = report.passes;
+    line("transform") << fixed(passes.transform_ms, 2) << " ms\n";
+    if (report.blends_slices) {
+        line("insert to blend") << fixed(passes.raster_insert_ms, 2) << " ms, slice by slice\n";
+    } else {
+        line("raster + insert") << fixed(passes.raster_insert_ms, 2) << " ms\n";
+        line("sort + blend") << fixed(passes.sort_blend_ms, 2) << " ms\n";
+    }
+    line("frame") << fixed(report.frame_ms, 2) << " ms (median of " << report.options.frames
+                  << ")\n";
+}
+
+nlohmann::ordered_json times_json(const Report& report) {
+    const PassTimes& passes = report.passes;
+    nlohmann::ordered_json json{{"transform", passes.transform_ms},
+                                {"raster_insert", nullptr},
+                                {"sort_blend", nullptr},
+                                {"slices", nullptr},
+                                {"frame", report.frame_ms}};
+    if (report.blends_slices) {
+        json["slices"] = passes.raster_insert_ms;
+    } else {
+        json["raster_insert"] = passes.raster_insert_ms;
+        json["sort_blend"] = passes.sort_blend_ms;
+    }
+    return json;
+}
+
 }  // namespace
 
 void print(const Report& report, std::ostream& out) {
-    const auto line = [&out](const std::string& name) -> std::ostream& {
+    const Line line = [&out](const std::string& name) -> std::ostream& {
         return out << "  " << std::left << std::setw(18) << name << std::right;
     };
     const Options& options = report.options;
@@ -81,32 +147,18 @@ void print(const Report& report, std::ostream& out) {
         << (options.quality.layers ? nearest_text(*options.quality.layers) : "all layers")
         << (options.opaque_floor ? ", opaque floor" : "") << '\n';
     line("device") << report.device << " (driver " << report.driver << ")\n";
-    line("method") << method_text({&method_named(options.method), options.quality}) << ", nodes of "
-                   << report.node_bytes << " bytes, " << options.quality.samples
-                   << (options.quality.samples == 1 ? " sample" : " samples") << " a pixel\n";
-    if (options.quality.reduce > 1)
-        line("reduced") << "transparent surfaces drawn with " << options.quality.reduce
-                        << " times fewer pixels a side\n";
-    line("triangles") << grouped(report.triangles) << dropped_text(report.drops) << '\n';
-    if (report.lengths) {
-        line("fragments") << grouped(report.lengths->total) << '\n';
-        line("non-empty pixels") << grouped(report.lengths->nonempty_cells) << '\n';
-        line("longest list") << grouped(report.lengths->longest) << '\n';
-    }
-    line("memory") << megabytes(report.method_bytes) << " MB of lists, "
-                   << megabytes(report.device_bytes) << " MB in all\n";
-    if (options.memory_bytes)
-        line("slices") << report.slices << ", " << grouped(report.method_bytes) << " of "
-                       << grouped(*options.memory_bytes) << " bytes used\n";
-    line("transform") << fixed(report.passes.transform_ms, 2) << " ms\n";
-    line("raster + insert") << fixed(report.passes.raster_insert_ms, 2) << " ms\n";
-    line("sort + blend") << fixed(report.passes.sort_blend_ms, 2) << " ms\n";
-    line("frame") << fixed(report.frame_ms, 2) << " ms (median of " << options.frames << ")\n";
-    if (report.choice) print(*report.choice, *options.budget, report.kept, out);
-    if (options.quality.epsilon > 0) line("early end") << early_end_text(report) << '\n';
+    print_method(report, line);
+    print_fragments(report, line);
+    print_memory(report, line);
+    print_times(report, line);
+    // A choice has a narrower bound of what the early end leaves out.
+    if (report.choice)
+        print(*report.choice, *options.budget, report.kept, out);
+    else if (options.quality.epsilon > 0)
+        line("early end") << early_end_text(report) << '\n';
     if (report.pixels_nan > 0)
-        line("NaN") << grouped(report.pixels_nan) << " pixels, drawn black\n";
-    if (report.comparison) print_comparison(report, out);
+        line("NaN") << counted(report.pixels_nan, "pixel") << ", drawn black\n";
+    if (report.comparison) print_comparison(report, line);
     if (report.mesh_ends_within_line)
         line("note") << "the mesh file ends within a line: it may have been cut off\n";
     line("picture") << std::filesystem::absolute(options.out).lexically_normal().string() << '\n';
@@ -141,7 +193,8 @@ void write_json(const Report& report, const std::filesystem::path& path) {
         json["longest_list"] = report.lengths->longest;
     }
     json["samples"] = options.quality.samples;
-    json["node_bytes"] = report.node_bytes;
+    json["node_bytes"] = nullptr;
+    if (report.node_bytes) json["node_bytes"] = *report.node_bytes;
     json["pool_bytes"] = report.method_bytes;
     json["reduce"] = options.quality.reduce;
     json["memory_bytes"] = nullptr;
@@ -151,10 +204,7 @@ void write_json(const Report& report, const std::filesystem::path& path) {
     json["device_bytes"] = report.device_bytes;
     json["frames"] = options.frames;
     if (report.choice) json["budget"] = json_of(*report.choice, *options.budget, report.kept);
-    json["time_ms"] = {{"transform", report.passes.transform_ms},
-                       {"raster_insert", report.passes.raster_insert_ms},
-                       {"sort_blend", report.passes.sort_blend_ms},
-                       {"frame", report.frame_ms}};
+    json["time_ms"] = times_json(report);
     json["psnr_db"] = nullptr;
     json["ssim"] = nullptr;
     json["max_abs_error"] = nullptr;

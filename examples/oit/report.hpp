@@ -23,10 +23,11 @@ struct Report {
     support::MeshDrops drops;
     bool mesh_ends_within_line = false;
     std::optional<cellist::Lengths> lengths;  ///< of methods that keep all fragments
-    std::uint64_t node_bytes = 0;             ///< of a fragment, without links
+    std::optional<std::uint64_t> node_bytes;  ///< of a fragment, without links, where it has a node
     std::uint64_t method_bytes = 0;           ///< what the method keeps on the device
     std::uint64_t device_bytes = 0;
-    std::uint32_t slices = 1;  ///< that the frame was built in
+    bool blends_slices = false;  ///< as soon as each is built: the passes are not timed apart
+    std::uint32_t slices = 1;    ///< that the frame was built in
     std::uint64_t pixels_nan = 0;
     float colour_max = 1;                  ///< brightest channel of a fragment, at most
     double frame_ms = 0;                   ///< from clearing to the image on the device, median

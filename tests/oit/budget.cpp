@@ -17,6 +17,8 @@
 namespace cellist::test {
 namespace {
 
+using Fate = oit::Candidate::Fate;
+
 raster::View view_from(double azimuth_degrees) {
     return support::frame_unit_sphere({azimuth_degrees, 10}, 48, 36);
 }
@@ -31,6 +33,21 @@ void require_met(const oit::Frame& frame, const oit::Keeper& keeper, const oit::
         CHECK(comparison.psnr_db >= budget.limit);
     else
         CHECK(comparison.max_abs_error <= budget.limit);
+}
+
+// All layers in float have drawn by turns with what was chosen, or are what was chosen.
+void require_times_against_chosen(const oit::Choice& choice) {
+    const std::string exact = oit::text(oit::exact_setting(choice.setting.quality));
+    for (const oit::Candidate& candidate : choice.candidates) {
+        INFO(oit::text(candidate.setting));
+        if (candidate.fate == Fate::chosen) CHECK(candidate.times_chosen == 1.0);
+        if (oit::text(candidate.setting) == exact)
+            CHECK(candidate.times_chosen == choice.exact_times);
+        if (candidate.fate == Fate::slower && candidate.fastest_ms)
+            CHECK((candidate.times_chosen || candidate.times_leader));
+    }
+    CHECK(choice.exact_times.has_value());
+    if (oit::text(choice.setting) == exact) CHECK(choice.exact_times == 1.0);
 }
 
 }  // namespace
@@ -57,14 +74,34 @@ TEST_CASE("what is chosen meets the budget, also after the view has changed") {
         oit::Keeper keeper(device(), frame, budget);
         INFO("budget " << text);
         REQUIRE(keeper.choice().met);
-        keeper.draw();
+        const oit::Keeper::Drawn first = keeper.draw();
+        CHECK(first.checked);
+        CHECK_FALSE(first.changed);
+        CHECK_FALSE(keeper.draw().checked);
         require_met(frame, keeper, budget);
         for (const double azimuth : {75.0, 200.0}) {
             frame.views = {view_from(azimuth)};
             const oit::Keeper::Drawn drawn = keeper.draw();
+            CHECK(drawn.changed);
             CHECK(drawn.checked);
             REQUIRE(budget.met_by(drawn.errors.value().told));
             require_met(frame, keeper, budget);
+        }
+    }
+}
+
+TEST_CASE("times are told against what was chosen, and settings as fast are no more accurate") {
+    const oit::Scene scene = random_scene(3, {oit::Blend::over});
+    const oit::Frame frame{.scene = scene, .views = {view_from(30)}};
+    for (const char* text : {"25dB", "1/255"}) {
+        const oit::Budget budget = oit::parse_budget(text);
+        const oit::Choice choice = oit::Keeper(device(), frame, budget).choice();
+        require_times_against_chosen(choice);
+        for (const oit::Candidate& candidate : choice.candidates) {
+            if (candidate.fate != Fate::as_fast) continue;
+            INFO(oit::text(candidate.setting));
+            CHECK(candidate.times_chosen.value() <= oit::Chooser::as_fast);
+            CHECK_FALSE(budget.better(candidate.error.value(), choice.errors.told));
         }
     }
 }
@@ -74,6 +111,7 @@ TEST_CASE("a budget that no setting meets leads to the most accurate one") {
     const oit::Frame frame{.scene = scene, .views = {view_from(30)}};
     const oit::Keeper keeper(device(), frame, oit::parse_budget("199dB"));
     CHECK_FALSE(keeper.choice().met);
+    CHECK_FALSE(oit::parse_budget("199dB").met_by(keeper.choice().scene.exact));
     for (const oit::Candidate& candidate : keeper.choice().candidates)
         if (candidate.error)
             CHECK(candidate.error->psnr_db() <= keeper.choice().errors.told.psnr_db());

@@ -54,6 +54,7 @@ std::uint32_t require_same(const oit::Frame& frame, const oit::MethodInfo& metho
     INFO(method.name);
     oit::Renderer whole(device(), frame, method);
     whole.draw();
+    const auto lengths = whole.method().lengths();
     const std::vector<cl_float4> expected = whole.image();
     const std::uint64_t least = least_of(frame, method);
     CHECK(contains(refusal(bounded(frame, least - 1), method), std::to_string(least)));
@@ -69,6 +70,7 @@ std::uint32_t require_same(const oit::Frame& frame, const oit::MethodInfo& metho
             CHECK(std::memcmp(image.data(), expected.data(), expected.size() * sizeof(cl_float4)) ==
                   0);
         }
+        CHECK(renderer.method().lengths()->histogram == lengths->histogram);
         most = std::max(most, renderer.method().slices());
         if (bytes == std::uint64_t{1} << 30) CHECK(renderer.method().slices() == 1);
     }

@@ -44,6 +44,7 @@ const MethodRegistration moments(
      .summary = "transmittance from four moments of depth (Muenstermann et al. 2018)",
      .position = 100,
      .exact = false,
+     .has_nodes = false,
      .refusal = accumulating_refusal,
      .make = make_accumulating<Moments>,
      .passes = two_passes});

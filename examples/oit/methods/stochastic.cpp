@@ -57,6 +57,7 @@ const MethodRegistration stochastic(
      .summary = "8 or other random trials of which fragments hide others (Enderton et al. 2010)",
      .position = 90,
      .exact = false,
+     .has_nodes = false,
      .sizes = sizes,
      .refusal = accumulating_refusal,
      .make = make_accumulating<Stochastic>,

@@ -35,6 +35,7 @@ const MethodRegistration weighted(
      .summary = "a mean weighted by opacity and nearness, one pass (McGuire, Bavoil 2013)",
      .position = 80,
      .exact = false,
+     .has_nodes = false,
      .refusal = accumulating_refusal,
      .make = make_accumulating<Weighted>});
 
