@@ -40,6 +40,25 @@ TEST_CASE("buffers are filled with values of any size") {
     fill<std::array<cl_ulong, 32>>({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16});
 }
 
+TEST_CASE("reads of one buffer at several moments are kept apart, whoever asks for them first") {
+    // Up to 16 KiB go through memory of the device's, which is used again; more do not.
+    for (const std::size_t size : {1u, 4096u, 4097u}) {
+        INFO("size " << size);
+        Buffer<cl_uint> buffer(device(), size);
+        std::vector<Pending<std::vector<cl_uint>>> reads;
+        for (cl_uint value = 0; value < 20; ++value) {
+            buffer.fill(value);
+            reads.push_back(buffer.download_async());
+            // A read that nobody asks for.
+            if (value % 3 == 0) (void)buffer.download_async();
+        }
+        for (cl_uint i = 0; i < 20; ++i) {
+            const cl_uint value = i * 7 % 20;
+            REQUIRE(reads[value].get() == std::vector<cl_uint>(size, value));
+        }
+    }
+}
+
 TEST_CASE("an empty buffer is a kernel argument") {
     Kernel kernel(device(),
                   "kernel void count(global const uint* in, uint size, global uint* out) "
