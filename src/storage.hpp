@@ -144,7 +144,7 @@ protected:
     /// allocate_pool() for what a build demands. Throws OverflowError where builds demand more in every
     /// pass: the kernel does not repeat itself.
     void grow_pool(std::uint64_t capacity_nodes, const BuildReport& report);
-    /// Enqueues the reading of the counters: they are there when the event has completed.
+    /// Enqueues the reading of the counters: they are there when it has arrived.
     [[nodiscard]] Reading read_counters(Shards& shards) const;
     /// Of counters that are followed by so many hands. What is in these counts as free.
     [[nodiscard]] static Counters sum(const Shards& shards, cl_uint hands);
@@ -168,9 +168,9 @@ protected:
         cellist_findings found{};
     };
     /// Enqueues a validating kernel over all cells: (container, arguments..., findings). What it found
-    /// is there when the event has completed.
+    /// is there when the reading has arrived.
     [[nodiscard]] Reading find(Findings& findings, Kernel& kernel,
-                                 const Arguments& arguments) const;
+                               const Arguments& arguments) const;
 
     std::shared_ptr<DeviceState> device_;
     Definitions definitions_;

@@ -100,10 +100,9 @@ TEST_CASE("every node of the pool belongs to exactly one shard") {
              {0u, 1u, 255u, 256u, 257u, 2047u, 2048u, 2049u, 65'537u, 262'144u, 270'123u}) {
             INFO("capacity " << capacity);
             // A pool that grows may have more nodes than its capacity.
-            const Lists<Item> lists(device(), {1},
-                                    {.overflow = Overflow::drop,
-                                     .capacity_nodes = capacity,
-                                     .allocation = allocation});
+            const Lists<Item> lists(
+                device(), {1},
+                {.overflow = Overflow::drop, .capacity_nodes = capacity, .allocation = allocation});
             Kernel owners(device(), source, "owners", lists);
             Buffer<cl_uint> owner(device(), capacity);
             Buffer<cl_uint> repeated(device(), 1);

@@ -241,7 +241,8 @@ void print(const Choice& choice, const Budget& budget, const KeptBudget& kept, s
     line("speed", speed_text(choice));
     line("search", counted(choice.candidates.size(), "setting") + ", " +
                        counted(choice.draws, "frame") + ", " + fixed(choice.took_ms / 1000, 1) +
-                       " s; times within 3 % count as equal");
+                       " s; times within " + fixed(100 * (Chooser::as_fast - 1), 0) +
+                       " % count as equal");
     line("others", std::string(choice.met ? "time against the chosen one, and " : "") +
                        (is_psnr ? "PSNR at least" : "error at most"));
     print_others(choice, budget, out);

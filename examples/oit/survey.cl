@@ -52,8 +52,8 @@ typedef struct {
 typedef struct {
     OitBlended layers[OIT_WINDOW];  // the i-th layer of a pixel at i % OIT_WINDOW
     uint count;
-    float lost_depth;  // of the last layer that is no longer among them, and the light that gets there
-    float lost_reaches;
+    // Of the last layer that is no longer among them: its depth, and the light that gets there.
+    float lost_depth, lost_reaches;
     float effect[OIT_DEPTHS_OF_NODES];  // linear, of all orders that depths do not tell
 } OitOrder;
 
@@ -232,8 +232,8 @@ kernel void oit_survey(CELLIST_LISTS(OIT_NODE, fragments), const OitResolution r
         float brightest = 0.0f, added = 0.0f, last_depth = 0.0f;
         for (int i = 0; i < OIT_LIGHTS; ++i) {
             float depth;
-            brightest = fmax(brightest,
-                             oit_brightest(oit_behind(OIT_SCREEN_PASS, &pixel, i, &depth)));
+            brightest =
+                fmax(brightest, oit_brightest(oit_behind(OIT_SCREEN_PASS, &pixel, i, &depth)));
             if (depth < INFINITY) last_depth = fmax(last_depth, depth);
         }
         cellist_for_each(fragments, cell, node) {
@@ -265,8 +265,8 @@ kernel void oit_survey(CELLIST_LISTS(OIT_NODE, fragments), const OitResolution r
         cellist_for_each(fragments, cell, node) {
             OitFragment fragment = oit_unpack(&pixel.frame, cellist_get(fragments, node));
             uint close;
-            const uint sure = oit_surely_visible(OIT_SCREEN_PASS, &pixel, &resolution, &fragment,
-                                                 &close);
+            const uint sure =
+                oit_surely_visible(OIT_SCREEN_PASS, &pixel, &resolution, &fragment, &close);
             if (close != 0) {
                 OitLights with = lights;
                 fragment.coverage = close;

@@ -113,9 +113,8 @@ typedef struct cellist_hand {
 
 // What a choice among the records of each cell finds, from 0.
 typedef struct cellist_choice {
-    CELLIST_UINT
-        undecided;       // cells with more records that equal the thresholds than slots for them
-    CELLIST_UINT words;  // of a record's key
+    CELLIST_UINT undecided;  // cells with more records at the thresholds than slots for them
+    CELLIST_UINT words;      // of a record's key
 } cellist_choice;
 
 // What a validation finds, from 0; each of its kernels says which of these it counts.

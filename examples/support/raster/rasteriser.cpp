@@ -289,8 +289,8 @@ Triangles::Triangles(const cellist::Device& device, const Projection& projection
 void Triangles::bin() {
     const Projection& p = projection_;
     counts_.fill({0, 0});
-    p.kernels_.bin.run(bin_range(device_, batches_.size()), counts_, queue_, capacity_of(queue_), blocks_,
-                       capacity_of(blocks_), p.views_, p.instances_, p.vertices_,
+    p.kernels_.bin.run(bin_range(device_, batches_.size()), counts_, queue_, capacity_of(queue_),
+                       blocks_, capacity_of(blocks_), p.views_, p.instances_, p.vertices_,
                        p.geometry_.positions(), p.geometry_.indices(), batches_);
     counted_ = counts_.download_async();
     complete_.reset();
