@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -51,6 +53,12 @@ inline bool out_of_memory(const OpenClError& error) {
 /// Throws OpenClError if a call of the C interface has failed.
 inline void check(const char* call, cl_int code) {
     if (code != CL_SUCCESS) throw OpenClError(call, code);
+}
+
+/// Places for the threads of a device that has some (threads.clh): twice as many, so that a table of them is
+/// never crowded; a power of two.
+inline cl_uint hands_of(const DeviceInfo& device) {
+    return std::bit_ceil(std::max(2 * device.compute_units, 8U));
 }
 
 /// Runs OpenCL calls and turns their failure into the library's error.

@@ -65,26 +65,34 @@ ListStorage::ListStorage(std::shared_ptr<DeviceState> device, const Definitions&
     heads_ = Memory(device_, head_words, sizeof(cl_uint), "head buffer");
 }
 
+cellist_view ListStorage::view() const {
+    return {{static_cast<cl_uint>(shape_.extent(0)), static_cast<cl_uint>(shape_.extent(1)),
+             static_cast<cl_uint>(shape_.extent(2)), static_cast<cl_uint>(shape_.extent(3))},
+            static_cast<cl_uint>(shape_.cells()),
+            static_cast<cl_uint>(pool_nodes()),
+            shard_bits_,
+            mode_,
+            slots_,
+            static_cast<cl_uint>(slice_.first_cell),
+            open_ ? static_cast<cl_uint>(slice_.cells) : 0,
+            open_ && reserves_ ? 1u : 0u,
+            rank_member_,
+            rank_words_,
+            hands_with(capacity_nodes_),
+            0};
+}
+
 void ListStorage::add_to(Arguments& arguments) const {
-    const cellist_view view{
-        {static_cast<cl_uint>(shape_.extent(0)), static_cast<cl_uint>(shape_.extent(1)),
-         static_cast<cl_uint>(shape_.extent(2)), static_cast<cl_uint>(shape_.extent(3))},
-        static_cast<cl_uint>(shape_.cells()),
-        static_cast<cl_uint>(pool_nodes()),
-        shard_bits_,
-        mode_,
-        slots_,
-        static_cast<cl_uint>(slice_.first_cell),
-        open_ ? static_cast<cl_uint>(slice_.cells) : 0,
-        open_ && reserves_ ? 1u : 0u,
-        rank_member_,
-        rank_words_,
-        hands_with(capacity_nodes_)};
-    arguments.add_nodes(nodes_.cl(), record().name);
-    arguments.add(heads_.cl());
+    add_to(arguments, nodes_, heads_, view());
+}
+
+void ListStorage::add_to(Arguments& arguments, const Memory& nodes, const Memory& heads,
+                         const cellist_view& view) const {
+    arguments.add_nodes(nodes.cl(), record().name);
+    arguments.add(heads.cl());
     arguments.add(shards_.cl());
     arguments.append(Arguments::Kind::value, &view, sizeof view);
-    arguments.add_mode(mode_);
+    arguments.add_mode(view.mode);
 }
 
 std::uint64_t ListStorage::pool_nodes_with(std::uint64_t capacity_nodes) const {
@@ -204,15 +212,15 @@ ListStorage::Counters ListStorage::sum(const Shards& shards, cl_uint hands) {
     return sum;
 }
 
-void ListStorage::clear_heads_and_counters(cl_uint head, std::uint64_t first_word,
-                                           std::uint64_t words) {
+void ListStorage::clear_heads_and_counters(const Memory& heads, cl_uint head,
+                                           std::uint64_t first_word, std::uint64_t words) {
     if (!clear_)
         clear_.emplace(device_,
                        Source{.text = std::string(kernels::clear_cl), .file_name = "clear.cl"},
                        "cellist_clear", Definitions{});
     const std::uint64_t counter_words = shards_.size_bytes() / sizeof(cl_uint);
     Arguments arguments;
-    arguments.add(heads_.cl());
+    arguments.add(heads.cl());
     arguments.add(cl_ulong{first_word});
     arguments.add(cl_ulong{words});
     arguments.add(head);

@@ -55,7 +55,7 @@ public:
     void settle() noexcept { reading_.settle(); }
     /// Gives the nodes' memory back, before another storage takes this one's place. What is left can
     /// only be destroyed, or be recovered. Blocks as settle() does.
-    void release_pool() noexcept;
+    virtual void release_pool() noexcept;
     /// Makes what a failed build may have left undone, with empty lists. A pool that grows is empty
     /// afterwards if there was none, or if `without_pool` says so.
     void recover(bool without_pool);
@@ -75,7 +75,7 @@ public:
     virtual void reserve(std::uint64_t total, std::uint64_t longest) = 0;
 
     /// Adds what CELLIST_LISTS declares.
-    void add_to(Arguments& arguments) const;
+    virtual void add_to(Arguments& arguments) const;
 
     /// Records that surely fit.
     [[nodiscard]] std::uint64_t capacity_nodes() const { return capacity_nodes_; }
@@ -84,7 +84,7 @@ public:
     /// Elements of the counters, hands of threads included.
     [[nodiscard]] std::uint64_t counters() const { return counters_with(capacity_nodes_); }
     /// Device memory of all buffers.
-    [[nodiscard]] std::uint64_t bytes() const;
+    [[nodiscard]] virtual std::uint64_t bytes() const;
     [[nodiscard]] std::uint64_t cells() const { return shape_.cells(); }
     [[nodiscard]] const cl::Buffer& nodes() const { return nodes_.cl(); }
 
@@ -125,6 +125,10 @@ protected:
     virtual bool review_pass(BuildReport& report) = 0;
     virtual void make_whole(bool without_pool) = 0;
 
+    /// What kernels see of the container.
+    [[nodiscard]] cellist_view view() const;
+    void add_to(Arguments& arguments, const Memory& nodes, const Memory& heads,
+                const cellist_view& view) const;
     [[nodiscard]] const RecordType& record() const { return definitions_.records.back(); }
     [[nodiscard]] std::uint64_t pool_nodes_with(std::uint64_t capacity_nodes) const;
     /// Elements of the counters, hands and their owners included.
@@ -150,8 +154,12 @@ protected:
     [[nodiscard]] static Counters sum(const Shards& shards, cl_uint hands);
     /// The hands of threads with a pool of this capacity: see threads.clh.
     [[nodiscard]] virtual cl_uint hands_with(std::uint64_t) const { return 0; }
-    /// Sets words of the heads, and clears all counters. Does not block.
-    void clear_heads_and_counters(cl_uint head, std::uint64_t first_word, std::uint64_t words);
+    /// Sets words of heads, and clears all counters. Does not block.
+    void clear_heads_and_counters(const Memory& heads, cl_uint head, std::uint64_t first_word,
+                                  std::uint64_t words);
+    void clear_heads_and_counters(cl_uint head, std::uint64_t first_word, std::uint64_t words) {
+        clear_heads_and_counters(heads_, head, first_word, words);
+    }
     /// Sets words of the heads. Does not block.
     void fill_heads(cl_uint value, std::uint64_t first_word, std::uint64_t words);
     /// A report of the counters.

@@ -21,8 +21,52 @@ void CountedStorage::clear() {
     stored_ = 0;
 }
 
+void CountedStorage::add_to(Arguments& arguments) const {
+    if (mode_ != CELLIST_PARTITIONED) return ListStorage::add_to(arguments);
+    const Partitions::Plan& plan = partitions_->plan();
+    cellist_view partitioned = view();
+    partitioned.capacity_nodes = static_cast<cl_uint>(plan.nodes);
+    // Blocks from one counter: those that are being filled lie close together.
+    partitioned.shard_bits = 0;
+    partitioned.hands = plan.hands;
+    partitioned.partition_bits = plan.bits;
+    ListStorage::add_to(arguments, partitions_->nodes(), partitions_->heads(), partitioned);
+}
+
+std::uint64_t CountedStorage::bytes() const {
+    return ListStorage::bytes() + (partitions_ ? partitions_->plan().bytes() : 0);
+}
+
+void CountedStorage::release_pool() noexcept {
+    ListStorage::release_pool();
+    partitions_.reset();
+}
+
+void CountedStorage::start_anew() {
+    counted_ = false;
+    if (partitions_ && partitions_->plan().records >= capacity_nodes_) return;
+    partitions_.reset();
+    partitions_ = partitions_for_pool();
+}
+
+/// Partitions for the records that the pool has room for. Null where builds have to count.
+std::unique_ptr<Partitions> CountedStorage::partitions_for_pool() const {
+    if (options_.overflow != Overflow::grow || slice_.cells != shape_.cells() ||
+        capacity_nodes_ <= not_for_partitions_)
+        return nullptr;
+    const auto plan = Partitions::plan(device_->info, node_layout(record()).size, shape_.cells(),
+                                       capacity_nodes_);
+    if (!plan || bytes() + plan->bytes() >
+                     std::min(options_.budget_bytes, device_->info.global_memory_bytes))
+        return nullptr;
+    return Partitions::make(device_, *plan);
+}
+
 void CountedStorage::prepare_pass() {
-    if (!counted_) {
+    if (partitions_) {
+        clear_heads_and_counters(partitions_->heads(), 0, 0, partitions_->plan().words_to_clear());
+        mode_ = CELLIST_PARTITIONED;
+    } else if (!counted_) {
         clear();
         mode_ = CELLIST_COUNTING;
     } else {
@@ -32,6 +76,12 @@ void CountedStorage::prepare_pass() {
 
 bool CountedStorage::finish_pass() {
     mode_ = CELLIST_CONTIGUOUS;
+    if (partitions_) {
+        move_from_partitions();
+        reading_ = partitions_->starts().read_later(&partitioned_, sizeof partitioned_);
+        reading_ = read_counters(counters_);
+        return false;
+    }
     if (counted_) {
         reading_ = find_unfilled(filled_);
         reading_ = read_counters(counters_);
@@ -47,7 +97,44 @@ bool CountedStorage::finish_pass() {
     return true;
 }
 
+/// Enqueues what turns partitions into lists, if the pool has room for them.
+void CountedStorage::move_from_partitions() {
+    if (!move_partition_) {
+        partition_starts_.emplace(kernel("cellist_partition_starts", kernels::partitions_cl, mode_));
+        move_partition_.emplace(kernel("cellist_move_partition", kernels::partitions_cl, mode_));
+    }
+    const Partitions::Plan& plan = partitions_->plan();
+    partition_starts_->run(1, partitions_->heads().cl(), plan.hands, plan.partitions,
+                           partitions_->starts().cl());
+    Arguments arguments;
+    ListStorage::add_to(arguments);
+    arguments.add_nodes(partitions_->nodes().cl(), record().name);
+    arguments.add(partitions_->heads().cl());
+    arguments.add(plan.hands);
+    arguments.add(plan.bits);
+    arguments.add(partitions_->starts().cl());
+    move_partition_->enqueue(Range(plan.partitions), arguments);
+}
+
+bool CountedStorage::review_partitions(BuildReport& report) {
+    const Counters inserted = sum(counters_, 0);
+    const bool fits = partitioned_ <= capacity_nodes_;
+    if (inserted.dropped > 0 || (!fits && refusal(partitioned_))) {
+        // More than they have room for, or a thread that has no place in them. Counting tells how many.
+        not_for_partitions_ = partitions_->plan().records;
+        partitions_.reset();
+        return false;
+    }
+    if (!fits) {
+        grow_pool(partitioned_, report);
+        move_from_partitions();
+    }
+    update(report, inserted, partitioned_);
+    return true;
+}
+
 bool CountedStorage::review_pass(BuildReport& report) {
+    if (partitions_) return review_partitions(report);
     const Counters counting = sum(counting_, 0);
     const std::uint64_t demand = demand_.sum + counting.dropped;
     const std::uint64_t kept = std::min<std::uint64_t>(demand_.sum, capacity_nodes_);
@@ -88,6 +175,7 @@ void CountedStorage::make_room(const BuildReport& report) {
 
 void CountedStorage::make_whole(bool without_pool) {
     counted_ = false;
+    partitions_.reset();
     mode_ = CELLIST_CONTIGUOUS;
     if (empties_pool(without_pool)) allocate_pool(0);
 }
@@ -97,6 +185,7 @@ std::uint64_t CountedStorage::nodes_for(std::uint64_t total, std::uint64_t, std:
 }
 
 void CountedStorage::reserve(std::uint64_t total, std::uint64_t) {
+    partitions_.reset();
     if (options_.overflow == Overflow::grow && capacity_nodes_ < total) make_pool(total);
 }
 

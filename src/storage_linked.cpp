@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <bit>
 
 #include "cellist_kernels.hpp"
 #include "storages.hpp"
@@ -28,13 +27,12 @@ LinkedStorage::LinkedStorage(std::shared_ptr<DeviceState> device, const Definiti
     clear();
 }
 
-/// Twice as many as threads, so that their table is never crowded. Where the pool does not grow it holds exactly
-/// what the options say: no thread may have free nodes for itself.
+/// Where the pool does not grow it holds exactly what the options say: no thread may have free nodes for itself.
 cl_uint LinkedStorage::hands_with(std::uint64_t capacity_nodes) const {
     if (!device_->info.threads || options_.overflow != Overflow::grow ||
         options_.allocation != Allocation::sharded)
         return 0;
-    const cl_uint hands = std::bit_ceil(std::max(2 * device_->info.compute_units, 8U));
+    const cl_uint hands = hands_of(device_->info);
     const std::uint64_t nodes = std::uint64_t{hands} * CELLIST_BLOCK_NODES;
     if (hands_part * nodes > capacity_nodes || capacity_nodes > CELLIST_CAPACITY_NODES_MAX - nodes)
         return 0;

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "cell_scan.hpp"
+#include "partitions.hpp"
 #include "storage.hpp"
 
 namespace cellist::detail {
@@ -33,7 +34,8 @@ private:
     std::optional<Kernel> validate_;
 };
 
-/// Two passes over the same kernels, count and fill; the lists lie behind one another.
+/// The lists lie behind one another: two passes over the same kernels, count and fill. A single one where the
+/// records are put into partitions first and the library moves them.
 class CountedStorage final : public ListStorage {
 public:
     CountedStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
@@ -43,18 +45,24 @@ public:
     std::uint64_t nodes_for(std::uint64_t total, std::uint64_t longest,
                             std::uint64_t cells) const override;
     void reserve(std::uint64_t total, std::uint64_t longest) override;
+    void add_to(Arguments& arguments) const override;
+    std::uint64_t bytes() const override;
+    void release_pool() noexcept override;
 
     /// What the counting pass counted: records of each cell, all of them dropped by the report.
     /// Follows end_pass(). Blocks.
     [[nodiscard]] std::vector<cl_uint> counts(BuildReport& report);
 
 private:
-    void start_anew() override { counted_ = false; }
+    void start_anew() override;
     void prepare_pass() override;
     bool finish_pass() override;
     bool review_pass(BuildReport& report) override;
     void make_whole(bool without_pool) override;
 
+    [[nodiscard]] std::unique_ptr<Partitions> partitions_for_pool() const;
+    void move_from_partitions();
+    bool review_partitions(BuildReport& report);
     void make_room(const BuildReport& report);
     Reading find_unfilled(Findings& findings);
     [[nodiscard]] cl_uint counts_at() const { return static_cast<cl_uint>(shape_.cells() + 1); }
@@ -65,6 +73,11 @@ private:
     CellScan::Totals demand_;
     Findings filled_;  ///< of the filling pass
     std::optional<Kernel> validate_;
+    std::unique_ptr<Partitions> partitions_;  ///< of this build; null if it counts
+    std::uint64_t not_for_partitions_ = 0;    ///< records that they had room for and did not take
+    cl_uint partitioned_ = 0;                 ///< records of the last pass
+    std::optional<Kernel> partition_starts_;
+    std::optional<Kernel> move_partition_;
 };
 
 /// A number of slots for each cell; one pass.

@@ -46,6 +46,7 @@
 //   FIXED       cells: the inserts so far                   record
 //   RANKING     as below                                    none: inserts only rank their keys
 //   CHOOSING    the same                                    record, as in FIXED
+//   PARTITIONED as below                                    record, and its cell where the link is
 //
 // RANKING and CHOOSING find the K = slots records of each cell that come first. Their heads are rows
 // of `cells` words:
@@ -54,12 +55,20 @@
 //   equals     1   how many of them there are
 //   least      K   the K least words of RANKING, ascending
 //   thresholds     one for each word of the key that was ranked
+//
+// PARTITIONED is the one pass of CONTIGUOUS on processors whose threads have nodes of their own (threads.clh).
+// Its nodes and heads are not those of the lists: partitions.cl moves the records there. A partition is
+// 2^partition_bits cells. Heads:
+//   owners     2 hands             threads, in two words each
+//   cursors    hands * partitions  cellist_cursor
+//   chain      blocks of nodes     the block that the same cursor had before
 #define CELLIST_LINKED 1u
 #define CELLIST_COUNTING 2u
 #define CELLIST_CONTIGUOUS 4u
 #define CELLIST_FIXED 8u
 #define CELLIST_RANKING 16u
 #define CELLIST_CHOOSING 32u
+#define CELLIST_PARTITIONED 64u
 
 // Rows of the heads in modes RANKING and CHOOSING.
 #define CELLIST_ROW_WANTED 1u
@@ -80,6 +89,7 @@ typedef struct cellist_view {
     CELLIST_UINT rank_member;     // of the record, that it is ranked by
     CELLIST_UINT rank_words;      // words of the key that have thresholds
     CELLIST_UINT hands;           // of threads: 0, or a power of two from 8 on
+    CELLIST_UINT partition_bits;  // cells of a partition in mode PARTITIONED: 2^partition_bits
 } cellist_view;
 
 // The counters of one shard, alone in its cache line. The struct behind the last shard holds the
@@ -110,6 +120,15 @@ typedef struct cellist_hand {
     CELLIST_UINT end;
     CELLIST_UINT padding[11];
 } cellist_hand;
+
+// Where a thread keeps the records of one partition: in blocks of CELLIST_BLOCK_NODES nodes, all but the
+// last of which are full.
+typedef struct cellist_cursor {
+    CELLIST_UINT node;    // the next one
+    CELLIST_UINT last;    // the end of its block
+    CELLIST_UINT block;   // the last; the chain leads to those before
+    CELLIST_UINT blocks;  // how many
+} cellist_cursor;
 
 // What a choice among the records of each cell finds, from 0.
 typedef struct cellist_choice {
