@@ -117,20 +117,32 @@ void CountedStorage::move_from_partitions() {
 }
 
 bool CountedStorage::review_partitions(BuildReport& report) {
+    const Partitions::Plan plan = partitions_->plan();
     const Counters inserted = sum(counters_, 0);
-    const bool fits = partitioned_ <= capacity_nodes_;
-    if (inserted.dropped > 0 || (!fits && refusal(partitioned_))) {
-        // More than they have room for, or a thread that has no place in them. Counting tells how many.
-        not_for_partitions_ = partitions_->plan().records;
-        partitions_.reset();
-        return false;
-    }
-    if (!fits) {
-        grow_pool(partitioned_, report);
-        move_from_partitions();
-    }
+    const std::uint64_t demand = partitioned_ + inserted.dropped;
     update(report, inserted, partitioned_);
-    return true;
+    if (inserted.dropped == 0 && demand <= capacity_nodes_) return true;
+
+    // Room for all: they are in the partitions, or are inserted again.
+    if (demand > plan.records || inserted.dropped == 0) {
+        const bool moves = inserted.dropped == 0 &&
+                           bytes_with(demand) + plan.bytes() <= options_.budget_bytes;
+        if (!moves) partitions_.reset();
+        require(demand, report);
+        grow_pool(demand, report);
+        if (moves) {
+            clear_heads_and_counters(0, 0, 0);
+            move_from_partitions();
+            report.capacity_nodes = capacity_nodes_;
+        } else {
+            partitions_ = partitions_for_pool();
+        }
+        return moves;
+    }
+    // A thread has found no place in them.
+    not_for_partitions_ = plan.records;
+    partitions_.reset();
+    return false;
 }
 
 bool CountedStorage::review_pass(BuildReport& report) {

@@ -155,4 +155,13 @@ inline void require_complete(const BuildReport& report, std::uint64_t stored,
     REQUIRE(report.capacity_nodes >= stored);
 }
 
+/// Runs of the kernel in a build that need not grow a pool of this capacity: Storage::counted counts and
+/// fills, but on processors whose threads have partitions of the cells.
+inline std::uint32_t passes_of(Storage storage, std::uint64_t capacity_nodes) {
+    const DeviceInfo& info = device().info();
+    const bool partitions =
+        info.threads && capacity_nodes >= std::uint64_t{1024} * info.compute_units;
+    return storage == Storage::counted && !partitions ? 2 : 1;
+}
+
 }  // namespace cellist::test
