@@ -48,6 +48,7 @@ kernel void cellist_partition_starts(global const uint* partitioned, uint hands,
         }                                                                                          \
     }
 
+#define CELLIST_LINE_BYTES 64
 #define CELLIST_COUNT(node) ++counts[node->next]
 #define CELLIST_MOVE(node) cellist_get(lists, counts[node->next]++) = node->record
 
@@ -78,6 +79,11 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cellist_move_partitio
         at += length;
     }
     if (end == lists_view.cells) heads[end] = at;
+    // Records go to any place of the partition. Its cache lines are fetched in order first.
+    volatile global const uchar* line =
+        (volatile global const uchar*)&cellist_get(lists, starts[1 + partition]);
+    volatile global const uchar* behind = (volatile global const uchar*)&cellist_get(lists, at);
+    for (; line < behind; line += CELLIST_LINE_BYTES) *line;
     CELLIST_FOR_EACH_PARTITIONED(CELLIST_MOVE)
     for (uint cell = first; cell < end; ++cell) counts[cell] -= heads[cell];
 }

@@ -27,6 +27,7 @@ enum class Storage {
     linked,
     /// Two passes over the same kernel, count and fill. The lists lie behind one another: reading is
     /// fast, and the pool holds exactly the records. The kernel must insert the same records twice.
+    /// Processors under PoCL take one pass where they can, with as much memory again as linked takes.
     counted,
     /// One pass: a number of slots for each cell. Fastest where all lists are short.
     fixed,
