@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "comparison.hpp"
-#include "oit/frames/other_orders.hpp"
 #include "oit/frames/run.hpp"
+#include "oit/other_orders.hpp"
 #include "renderer.hpp"
 #include "scenes.hpp"
 

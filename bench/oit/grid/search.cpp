@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "image.hpp"
+#include "oit/other_orders.hpp"
 #include "progress.hpp"
 #include "renderer.hpp"
 #include "stopwatch.hpp"
@@ -20,6 +21,8 @@ constexpr double nearly = 1.25;
 // Short frames are drawn more often, until they have taken so long.
 constexpr double enough_ms = 200;
 constexpr std::size_t most_runs = 200;
+// Of the layers of a pixel, where float does not tell one.
+constexpr int most_orders = 5000;
 
 Reference reference_of(const Frame& frame) {
     support::Progress progress("reference");
@@ -28,6 +31,10 @@ Reference reference_of(const Frame& frame) {
 
 // Of each channel, encoded.
 using ChannelErrors = std::array<double, 3>;
+
+ChannelErrors difference(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+    return {std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])};
+}
 
 double largest(const ChannelErrors& errors) { return std::ranges::max(errors); }
 
@@ -48,25 +55,38 @@ Truth::Truth(const cellist::Device& device, const Frame& frame) : reference_(ref
     Renderer renderer(device, exact, *setting.method);
     renderer.draw();
     drawn_ = renderer.image();
+    for (std::size_t p = 0; p < drawn_.size(); ++p) {
+        if (!reference_.ambiguous[p]) continue;
+        std::vector<Colour>& colours = as_right_[p];
+        const auto take = [&](const glm::dvec3& colour) {
+            const Colour encoded{support::srgb_from_linear(colour.x),
+                                 support::srgb_from_linear(colour.y),
+                                 support::srgb_from_linear(colour.z)};
+            if (std::ranges::find(colours, encoded) == colours.end()) colours.push_back(encoded);
+            return false;
+        };
+        take({drawn_[p].s[0], drawn_[p].s[1], drawn_[p].s[2]});
+        bench::any_other_order(reference_, p, frame.quality.samples, most_orders, take);
+    }
 }
 
 PictureErrors Truth::errors_of(std::span<const cl_float4> image) const {
     const auto channels = 3 * static_cast<double>(image.size());
     PictureErrors errors;
     for (std::size_t p = 0; p < image.size(); ++p) {
-        ChannelErrors off{}, off_drawn{};
-        for (int c = 0; c < 3; ++c) {
-            const auto encoded = [&](const cl_float4& pixel) {
-                return support::srgb_from_linear(static_cast<double>(pixel.s[c]));
-            };
-            const double is = encoded(image[p]);
-            const auto at = static_cast<std::size_t>(c);
-            off.at(at) = std::abs(is - support::srgb_from_linear(reference_.image[p][c]));
-            off_drawn.at(at) = std::abs(is - encoded(drawn_[p]));
+        Colour is, is_right;
+        for (std::size_t c = 0; c < is.size(); ++c) {
+            is[c] = support::srgb_from_linear(static_cast<double>(image[p].s[c]));
+            is_right[c] = support::srgb_from_linear(reference_.image[p][static_cast<int>(c)]);
         }
+        const ChannelErrors off = difference(is, is_right);
         add(errors.all, off, channels);
-        const bool other_order = reference_.ambiguous[p] && largest(off_drawn) < largest(off);
-        add(errors.told, other_order ? off_drawn : off, channels);
+        ChannelErrors told = off;
+        if (const auto others = as_right_.find(p); others != as_right_.end())
+            for (const Colour& other : others->second)
+                if (const ChannelErrors its = difference(is, other); largest(its) < largest(told))
+                    told = its;
+        add(errors.told, told, channels);
     }
     return errors;
 }

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -17,22 +19,25 @@
 namespace oit {
 
 /// The picture of a frame in double precision. Where depths as float do not tell the order of its
-/// layers, the picture that the device draws of all layers in float has an order that is as right.
+/// layers, any order is as right, and so is the picture that the device draws of all layers in float.
 class Truth {
 public:
     /// Draws both. Blocks.
     Truth(const cellist::Device& device, const Frame& frame);
 
     /// `image` is linear, eye by eye. PictureErrors::all are those against the reference;
-    /// PictureErrors::told are, in pixels whose order is not told, against the nearer of the two.
+    /// PictureErrors::told are, in pixels whose order is not told, against the nearest of those.
     [[nodiscard]] PictureErrors errors_of(std::span<const cl_float4> image) const;
 
     [[nodiscard]] const Reference& reference() const { return reference_; }
     [[nodiscard]] std::uint64_t pixels_ambiguous() const;
 
 private:
+    using Colour = std::array<double, 3>;  // encoded
+
     Reference reference_;
     std::vector<cl_float4> drawn_;
+    std::map<std::size_t, std::vector<Colour>> as_right_;  // by pixel whose order is not told
 };
 
 /// Milliseconds of a frame.

@@ -1,4 +1,4 @@
-#include "oit/frames/other_orders.hpp"
+#include "oit/other_orders.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +14,6 @@ namespace bench {
 namespace {
 
 using Fragments = std::span<const oit::ReferenceFragment>;
-
-constexpr int most_orders = 100'000;  // of a pixel that are tried
 
 double error_of(const glm::dvec3& colour, const cl_float4& pixel) {
     double error = 0;
@@ -67,32 +65,34 @@ bool next_order(std::vector<std::size_t>& order, const std::vector<Group>& group
     });
 }
 
+}  // namespace
+
 // What is behind the fragments counts the same in each order, for the light that passes is a product.
-bool is_of_another_order(Fragments fragments, const glm::dvec3& colour, const cl_float4& pixel,
-                         std::size_t samples) {
+bool any_other_order(const oit::Reference& reference, std::size_t pixel, int samples, int most,
+                     const std::function<bool(const glm::dvec3&)>& use) {
+    const std::uint64_t first = reference.offsets[pixel];
+    const Fragments fragments =
+        Fragments(reference.fragments).subspan(first, reference.offsets[pixel + 1] - first);
     const std::vector<Group> groups = groups_of(fragments);
     std::vector<std::size_t> order(fragments.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    const glm::dvec3 sorted = light_of(fragments, order, samples);
-    for (int tried = 0; tried < most_orders && next_order(order, groups); ++tried)
-        if (error_of(colour + light_of(fragments, order, samples) - sorted, pixel) <= 1.0 / 255)
-            return true;
+    const auto light = [&] { return light_of(fragments, order, static_cast<std::size_t>(samples)); };
+    const glm::dvec3 behind = reference.image[pixel] - light();
+    for (int tried = 0; tried < most && next_order(order, groups); ++tried)
+        if (use(behind + light())) return true;
     return false;
 }
 
-}  // namespace
-
 std::uint64_t pixels_of_another_order(const oit::Reference& reference,
                                       std::span<const cl_float4> image, int samples) {
+    constexpr int most_orders = 100'000;  // of a pixel
     std::uint64_t count = 0;
     for (std::size_t p = 0; p < image.size(); ++p) {
-        const glm::dvec3& colour = reference.image[p];
-        if (error_of(colour, image[p]) <= 1.0 / 255) continue;
-        const Fragments fragments =
-            Fragments(reference.fragments)
-                .subspan(reference.offsets[p], reference.offsets[p + 1] - reference.offsets[p]);
-        if (is_of_another_order(fragments, colour, image[p], static_cast<std::size_t>(samples)))
-            ++count;
+        if (error_of(reference.image[p], image[p]) <= 1.0 / 255) continue;
+        const auto is_near = [&](const glm::dvec3& colour) {
+            return error_of(colour, image[p]) <= 1.0 / 255;
+        };
+        if (any_other_order(reference, p, samples, most_orders, is_near)) ++count;
     }
     return count;
 }
