@@ -12,10 +12,10 @@ template <class Record>
 class BuildRead {
 public:
     BuildRead(const Suite& suite, const Workload& workload, const Keeping& keeping,
-              Input input = Input::generated)
+              Input input = Input::generated, std::size_t by_turns = 1)
         : device_(suite.device()),
           workload_(workload),
-          containers_(suite, workload, keeping, input),
+          containers_(suite, workload, keeping, input, by_turns),
           digests_(device_, workload.cells()),
           read_(device_, source_of<Record>(kernels::read_cl, "read.cl"), "read",
                 containers_.next()) {}
@@ -78,7 +78,8 @@ Result compare_storages(const Suite& suite, const Workload& workload) {
         return !fits(suite.device().info(), workload, keeping);
     });
     std::deque<BuildRead<Record12>> works;
-    for (const Keeping& keeping : keepings) works.emplace_back(suite, workload, keeping);
+    for (const Keeping& keeping : keepings)
+        works.emplace_back(suite, workload, keeping, Input::generated, keepings.size());
 
     // After the time of a round: build and read of each storage, then the ratios.
     const std::vector<Samples> samples = sample(suite.sampling(), [&] {

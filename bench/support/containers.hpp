@@ -36,9 +36,10 @@ enum class Input { generated, stored };
 template <class Record>
 class Containers {
 public:
-    /// Throws std::runtime_error where the lists are wrong.
+    /// `by_turns` of these are used by turns, and fill the caches together. Throws std::runtime_error
+    /// where the lists are wrong.
     Containers(const Suite& suite, const Workload& workload, const Keeping& keeping,
-               Input input = Input::generated)
+               Input input = Input::generated, std::size_t by_turns = 1)
         : workload_(workload), options_(options_for(workload, keeping)), inserts_(keeping.inserts) {
         const cellist::Device& device = suite.device();
         lists_.emplace_back(device, cellist::Shape{workload.cells()}, options_);
@@ -58,7 +59,7 @@ public:
         else
             Containers(suite, checked, keeping, input);
 
-        while (lists_.size() < suite.copies(lists_.front().pool_bytes())) {
+        while (lists_.size() < suite.copies(by_turns * lists_.front().pool_bytes())) {
             lists_.emplace_back(device, cellist::Shape{workload.cells()}, options_);
             settle(lists_.back());
         }
