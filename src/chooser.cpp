@@ -38,8 +38,12 @@ std::string reads_text(std::uint32_t reads) {
     return std::to_string(reads) + (reads == 1 ? " read" : " reads");
 }
 
-Cost least_of(const Cost& a, const Cost& b) {
-    return {std::min(a.build_seconds, b.build_seconds), std::min(a.read_seconds, b.read_seconds)};
+/// Of two, the lesser.
+double median_of(const std::vector<Cost>& costs, double Cost::*part) {
+    std::vector<double> values;
+    for (const Cost& cost : costs) values.push_back(cost.*part);
+    std::ranges::sort(values);
+    return values[(values.size() - 1) / 2];
 }
 
 Cost scaled(const Cost& cost, double factor) {
@@ -87,6 +91,7 @@ void Chooser::begin_trial() {
     stored_ = most_stored_ = longest_ = 0;
     for (Candidate& candidate : candidates_) {
         candidate.builds = 0;
+        candidate.costs.clear();
         if (!candidate.for_ever) candidate.excluded.clear();
     }
 }
@@ -100,12 +105,15 @@ void Chooser::measured(const Trial& trial) {
     // Of a record, so that builds of different numbers can be compared.
     Candidate& candidate = candidates_[current_];
     const Cost cost = scaled(trial.cost, 1 / static_cast<double>(trial.stored));
-    if (candidate.builds == 1) candidate.least = cost;
-    if (candidate.builds > 1) candidate.least = least_of(candidate.least, cost);
+    if (candidate.builds > 0) {
+        candidate.costs.push_back(cost);
+        candidate.median = {median_of(candidate.costs, &Cost::build_seconds),
+                            median_of(candidate.costs, &Cost::read_seconds)};
+    }
     ++candidate.builds;
     if (candidate.builds > samples ||
         (candidate.is_measured() &&
-         total_seconds(candidate.least) > hopeless * total_seconds(best()->least)))
+         total_seconds(candidate.median) > hopeless * total_seconds(best()->median)))
         next_candidate();
 }
 
@@ -137,7 +145,7 @@ const Chooser::Candidate* Chooser::best() const {
     const Candidate* best = nullptr;
     for (const Candidate& candidate : candidates_)
         if (candidate.is_measured() &&
-            (best == nullptr || total_seconds(candidate.least) < total_seconds(best->least)))
+            (best == nullptr || total_seconds(candidate.median) < total_seconds(best->median)))
             best = &candidate;
     return best;
 }
@@ -159,7 +167,7 @@ std::string Chooser::refusal(Storage storage) const {
         most = std::max(most, seconds);
         ratio = std::min(ratio, total_seconds(profile_->cost(storage, pattern)) / seconds);
     }
-    const double seconds = total_seconds(known->least);
+    const double seconds = total_seconds(known->median);
     if (ratio <= hopeless || seconds < least / 1.5 || seconds > most * 1.5) return {};
     return std::string("not tried: over twice as slow as ") + name_of(known->storage) +
            " in the profile of this device";
@@ -230,7 +238,7 @@ std::string Chooser::reason() const {
             text +=
                 "nothing is measured yet, and there is no profile of this device: run cellist tune";
     } else if (chosen.is_measured()) {
-        text += sum(scaled(chosen.least, static_cast<double>(stored_))) + " for " +
+        text += sum(scaled(chosen.median, static_cast<double>(stored_))) + " for " +
                 std::to_string(stored_) + " records";
     } else {
         text += "the only one that is left";
@@ -241,7 +249,7 @@ std::string Chooser::reason() const {
             text += std::string("; ") + name_of(other.storage) + " " + other.excluded;
         else if (other.is_measured())
             text += std::string("; ") + name_of(other.storage) + " " +
-                    text_of(static_cast<double>(stored_) * total_seconds(other.least));
+                    text_of(static_cast<double>(stored_) * total_seconds(other.median));
     }
     return text;
 }

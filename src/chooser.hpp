@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <cellist/options.hpp>
 
@@ -27,8 +28,8 @@ inline constexpr std::uint32_t walk_most = 1u << 20;
 /// what was measured.
 ///
 /// A trial builds with each storage in turn: once to warm up, then up to three times, fewer where the
-/// first shows that another storage is twice as fast. The least time of a build and `expected_reads`
-/// times the least time of a read decide. When the number of records has doubled or halved, another
+/// first shows that another storage is twice as fast. The median time of a build and `expected_reads`
+/// times that of a read decide. When the number of records has doubled or halved, another
 /// trial follows; ever more builds must have passed since the last, so that numbers that go to and fro
 /// do not keep the container on trial.
 class Chooser {
@@ -65,10 +66,11 @@ public:
 private:
     struct Candidate {
         Storage storage;
-        std::uint32_t builds = 0;   ///< of this trial, the first to warm up
-        Cost least = {};            ///< of a record
-        std::string excluded = {};  ///< why, and empty if it is not
-        bool for_ever = false;      ///< excluded
+        std::uint32_t builds = 0;      ///< of this trial, the first to warm up
+        std::vector<Cost> costs = {};  ///< of a record, in each build but the first
+        Cost median = {};              ///< of these
+        std::string excluded = {};     ///< why, and empty if it is not
+        bool for_ever = false;         ///< excluded
 
         [[nodiscard]] bool is_measured() const { return builds > 1 && excluded.empty(); }
     };
