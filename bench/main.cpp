@@ -20,11 +20,13 @@ namespace {
 constexpr const char* usage =
     "usage: cellist_bench [--effort=tiny|quick|full] [--nodes=N] [--occupancy=K] [--threads=T]\n"
     "                     [options of Google Benchmark; see --help]\n"
-    "  --nodes      records of the workload that ratios are taken of\n"
+    "  --nodes      records of the workload that ratios are taken of; 1,024 at least\n"
     "  --occupancy  records of a cell, on average; the number of cells is rounded down to a power "
     "of 2\n"
     "  --threads    of the peers in C++; without it as many as the device has compute units\n"
     "CELLIST_DEVICE names the device.\n";
+
+constexpr cl_uint least_nodes = 1u << 10;
 
 struct Options {
     bench::Effort effort = bench::Effort::quick;
@@ -39,6 +41,13 @@ cl_uint number(std::string_view text) {
     if (error != std::errc() || end != text.data() + text.size() || value == 0)
         throw std::invalid_argument("'" + std::string(text) +
                                     "' is not a number from 1 to 2^32 - 1");
+    return value;
+}
+
+cl_uint nodes(std::string_view text) {
+    const cl_uint value = number(text);
+    if (value < least_nodes)
+        throw std::invalid_argument("--nodes is " + std::to_string(least_nodes) + " at least");
     return value;
 }
 
@@ -61,7 +70,7 @@ Options parse(int argc, char** argv) {
         if (name == "--effort")
             options.effort = effort(value);
         else if (name == "--nodes")
-            options.nodes = number(value);
+            options.nodes = nodes(value);
         else if (name == "--occupancy")
             options.occupancy = number(value);
         else if (name == "--threads")
@@ -74,7 +83,7 @@ Options parse(int argc, char** argv) {
 
 cl_uint default_nodes(const cellist::Device& device, bench::Effort effort) {
     const bool gpu = (device.info().type & CL_DEVICE_TYPE_GPU) != 0;
-    if (effort == bench::Effort::tiny) return 1u << 10;
+    if (effort == bench::Effort::tiny) return least_nodes;
     const cl_uint full = gpu ? 1u << 26 : 1u << 22;
     return effort == bench::Effort::quick ? full / 4 : full;
 }

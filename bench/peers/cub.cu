@@ -371,7 +371,9 @@ void sort_segments(Report& report, const Sampling& sampling, const Workload& w, 
     host_seconds(work);
     CHECK(cudaMemset(unsorted.get(), 0, sizeof(std::uint32_t)));
     CHECK(cudaMemset(none.get(), 0, sizeof(std::uint32_t)));
-    count_unsorted<<<groups(w.nodes), group>>>(sorted_keys.get(), w.nodes, length, unsorted.get());
+    // Where cells do not divide the nodes, the last few belong to no list.
+    const std::uint32_t sorted = length * w.cells();
+    count_unsorted<<<groups(sorted), group>>>(sorted_keys.get(), sorted, length, unsorted.get());
     compare(unsorted, none, 1, name);
     report.add(name, sample(sampling, work), w.nodes);
 }

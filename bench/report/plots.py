@@ -132,7 +132,7 @@ def crossover(results):
     width, height, left, top = 84, 22, 240, 88
     rows = sorted(grid, key=lambda key: (DISTRIBUTIONS.index(key[0]), key[1]))
     parts = [_text(16, 24, f"The fastest storage: {device_title(results)}", size=15),
-             _text(left, 46, "a build and so many reads of all lists; the numbers say how many times as long the next best takes")]
+             _text(left, 46, "a build and so many reads; × says how many times as long the next takes")]
     for index, storage in enumerate(STORAGES):
         parts += [f'<rect x="{left + 130 * index}" y="54" width="12" height="12" fill="{COLOURS[index]}"/>',
                   _text(left + 130 * index + 18, 64, storage)]

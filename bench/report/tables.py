@@ -118,7 +118,7 @@ def summary_as_markdown(all_results):
                                 ("runs", "16 in a row hit one cell"), ("skewed", "Zipf: a few cells get most"),
                                 ("hot", "all in one cell")):
         add(f"insert, {title}", insert(distribution))
-    add("insert, random, one global counter instead of shards", insert("random", "global"))
+    add("insert, random, as in the papers: one counter for all, every work-item alone", insert("random", "global"))
     for name, against in (("build_read_vs_sort", "radix or merge sort by cell on the same device"),
                           ("build_read_vs_cpp", "the best C++ on the same cores")):
         for distribution in ("random", "coherent", "runs"):
