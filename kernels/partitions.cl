@@ -22,18 +22,24 @@ static inline global const cellist_cursor* cellist_cursors(global const uint* pa
 kernel void cellist_partition_starts(global const uint* partitioned, uint hands, uint partitions,
                                      global uint* starts) {
     global const cellist_cursor* cursors = cellist_cursors(partitioned, hands);
+    for (uint partition = 0; partition < partitions; ++partition) starts[1 + partition] = 0;
+    for (uint hand = 0; hand < hands; ++hand)
+        for (uint partition = 0; partition < partitions; ++partition) {
+            const cellist_cursor cursor = cursors[(ulong)hand * partitions + partition];
+            starts[1 + partition] +=
+                cursor.blocks * CELLIST_BLOCK_NODES - (cursor.last - cursor.node);
+        }
     uint at = 0;
     for (uint partition = 0; partition < partitions; ++partition) {
+        const uint length = starts[1 + partition];
         starts[1 + partition] = at;
-        for (uint hand = 0; hand < hands; ++hand) {
-            const cellist_cursor cursor = cursors[(ulong)hand * partitions + partition];
-            at += cursor.blocks * CELLIST_BLOCK_NODES - (cursor.last - cursor.node);
-        }
+        at += length;
     }
     starts[0] = at;
 }
 
-// Calls `use` with each node of a partition: blocks from the last to the first, of one thread after the other.
+// Calls `use` with each node of `partition`: blocks from the last to the first, of one thread after the other. Takes
+// the variables of cellist_move_partition.
 #define CELLIST_FOR_EACH_PARTITIONED(use)                                                          \
     for (uint hand = 0; hand < hands; ++hand) {                                                    \
         const cellist_cursor cursor = cursors[(ulong)hand * partitions + partition];               \

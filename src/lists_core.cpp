@@ -98,7 +98,14 @@ void ListsCore::add_to(Arguments& arguments) const {
     storage_->add_to(arguments);
 }
 
+/// Throws Error where the function that inserts uses the container that it fills.
+void ListsCore::refuse_while_open() const {
+    if (storage_->is_open())
+        throw Error("a container is used while it is built: kernels may insert, and no more");
+}
+
 void ListsCore::clear() {
+    refuse_while_open();
     settle();
     try {
         storage_->clear();
@@ -109,6 +116,7 @@ void ListsCore::clear() {
 }
 
 std::function<Validation()> ListsCore::validate() const {
+    refuse_while_open();
     settle();
     return storage_->validate();
 }
@@ -137,12 +145,14 @@ unsigned read_mode(const ListsCore& lists) { return lists.mode(); }
 
 cl::Event ListsCore::sort(const SortKey& key, std::uint32_t front) {
     check_expression(key.expression);
+    refuse_while_open();
     settle();
     return sorter().sort(*storage_, key, front);
 }
 
 cl::Event ListsCore::sort_async(const SortKey& key) {
     check_expression(key.expression);
+    refuse_while_open();
     settle_for_commands();
     return sorter().sort_in_place(*storage_, key);
 }
@@ -156,6 +166,7 @@ void ListsCore::sort_as_on(cl_device_type type) { sorter().set_device_type(type)
 
 /// The length of every list, in words of a device buffer that start at `at`.
 Memory ListsCore::device_lengths(std::uint64_t at) const {
+    refuse_while_open();
     Memory lengths(device_, at + shape_.cells(), sizeof(cl_uint), "length buffer");
     Arguments arguments;
     add_to(arguments);

@@ -11,7 +11,7 @@
 namespace cellist::detail {
 
 Memory::Memory(std::shared_ptr<DeviceState> state, std::uint64_t count, std::size_t element_bytes,
-               const char* what)
+               const char* what, cl_mem_flags flags)
     : state_(std::move(state)) {
     const std::uint64_t limit = state_->info.max_allocation_bytes;
     if (count > limit / element_bytes)
@@ -20,8 +20,7 @@ Memory::Memory(std::shared_ptr<DeviceState> state, std::uint64_t count, std::siz
                     std::to_string(limit) + " bytes per allocation");
     size_bytes_ = count * element_bytes;
     opencl([&] {
-        buffer_ =
-            cl::Buffer(state_->context, CL_MEM_READ_WRITE, std::max<std::uint64_t>(size_bytes_, 1));
+        buffer_ = cl::Buffer(state_->context, flags, std::max<std::uint64_t>(size_bytes_, 1));
     });
 }
 

@@ -16,6 +16,9 @@ constexpr std::uint64_t unfilled_part = 4;
 /// Room for growth: this part of the records.
 constexpr std::uint64_t growth_part = 8;
 
+/// PoCL aborts where it finds no memory for a buffer at its first use. So it looks for it now.
+constexpr cl_mem_flags at_once = CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR;
+
 }  // namespace
 
 std::uint64_t Partitions::Plan::words_to_clear() const {
@@ -35,10 +38,11 @@ std::optional<Partitions::Plan> Partitions::plan(const DeviceInfo& device, std::
                                                  std::uint64_t cells, std::uint64_t records) {
     if (!device.threads) return {};
     Plan plan{.records = records + records / growth_part, .node_bytes = node_bytes};
-    const std::uint64_t unfilled =
-        std::uint64_t{std::max(device.compute_units, 1U)} * CELLIST_BLOCK_NODES;
+    const std::uint64_t threads = std::max(device.compute_units, 1U);
+    const std::uint64_t unfilled = threads * CELLIST_BLOCK_NODES;
     const std::uint64_t most = std::min(partitions_most, records / (unfilled_part * unfilled));
-    if (most == 0) return {};
+    // A thread moves a partition: there must be some for half of them.
+    if (most < std::max<std::uint64_t>(threads / 2, 1) || (cells - 1) >> 31 >= most) return {};
     while ((cells - 1) >> plan.bits >= most) ++plan.bits;
     plan.partitions = static_cast<cl_uint>((cells - 1) >> plan.bits) + 1;
     plan.hands = hands_of(device);
@@ -52,10 +56,10 @@ std::optional<Partitions::Plan> Partitions::plan(const DeviceInfo& device, std::
 
 Partitions::Partitions(const std::shared_ptr<DeviceState>& device, const Plan& plan)
     : plan_(plan),
-      nodes_(device, plan.nodes, plan.node_bytes, "partitions"),
-      heads_(device, plan.head_words(), sizeof(cl_uint), "heads of partitions"),
-      starts_(device, 1 + std::uint64_t{plan.partitions}, sizeof(cl_uint),
-              "starts of partitions") {}
+      nodes_(device, plan.nodes, plan.node_bytes, "partitions", at_once),
+      heads_(device, plan.head_words(), sizeof(cl_uint), "heads of partitions", at_once),
+      starts_(device, 1 + std::uint64_t{plan.partitions}, sizeof(cl_uint), "starts of partitions",
+              at_once) {}
 
 std::unique_ptr<Partitions> Partitions::make(const std::shared_ptr<DeviceState>& device,
                                              const Plan& plan) {

@@ -16,7 +16,7 @@ namespace cellist::detail {
 class Partitions {
 public:
     struct Plan {
-        std::uint64_t records = 0;  ///< that surely fit
+        std::uint64_t records = 0;  ///< that fit from a thread a compute unit
         std::uint64_t nodes = 0;    ///< of whole blocks
         std::size_t node_bytes = 0;
         cl_uint hands = 0;  ///< of threads
@@ -28,7 +28,7 @@ public:
         [[nodiscard]] std::uint64_t head_words() const;
         [[nodiscard]] std::uint64_t bytes() const;
     };
-    /// For some more records than these. None where a device has no such threads, or its limits or so
+    /// For an eighth more records than these. None where a device has no such threads, or its limits or so
     /// few records forbid it.
     [[nodiscard]] static std::optional<Plan> plan(const DeviceInfo& device, std::size_t node_bytes,
                                                   std::uint64_t cells, std::uint64_t records);

@@ -48,6 +48,8 @@ public:
     /// Takes the counters of the last pass into the report, and grows, stops or drops by the options.
     /// True if the lists are complete. Throws OverflowError; the caller empties the lists then. Blocks.
     bool review(BuildReport& report);
+    /// Whether kernels may insert now: in the midst of a pass.
+    [[nodiscard]] bool is_open() const { return open_; }
     /// Whether a review can change the lists.
     [[nodiscard]] bool may_grow() const { return options_.overflow != Overflow::drop; }
 

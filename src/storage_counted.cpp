@@ -52,14 +52,16 @@ void CountedStorage::start_anew() {
 /// Partitions for the records that the pool has room for. Null where builds have to count.
 std::unique_ptr<Partitions> CountedStorage::partitions_for_pool() const {
     if (options_.overflow != Overflow::grow || slice_.cells != shape_.cells() ||
-        capacity_nodes_ <= not_for_partitions_)
+        capacity_nodes_ <= no_place_up_to_)
         return nullptr;
     const auto plan = Partitions::plan(device_->info, node_layout(record()).size, shape_.cells(),
                                        capacity_nodes_);
-    if (!plan || bytes() + plan->bytes() >
-                     std::min(options_.budget_bytes, device_->info.global_memory_bytes))
-        return nullptr;
+    if (!plan || !has_room_for(bytes() + plan->bytes())) return nullptr;
     return Partitions::make(device_, *plan);
+}
+
+bool CountedStorage::has_room_for(std::uint64_t all_bytes) const {
+    return all_bytes <= std::min(options_.budget_bytes, device_->info.global_memory_bytes);
 }
 
 void CountedStorage::prepare_pass() {
@@ -117,31 +119,33 @@ void CountedStorage::move_from_partitions() {
 }
 
 bool CountedStorage::review_partitions(BuildReport& report) {
-    const Partitions::Plan plan = partitions_->plan();
+    const Partitions::Plan plan = partitions_->plan();  // these may go
     const Counters inserted = sum(counters_, 0);
     const std::uint64_t demand = partitioned_ + inserted.dropped;
-    update(report, inserted, partitioned_);
-    if (inserted.dropped == 0 && demand <= capacity_nodes_) return true;
+    const std::uint64_t kept = std::min<std::uint64_t>(partitioned_, capacity_nodes_);
+    update(report, inserted, kept);
+    report.dropped = demand - kept;
+    report.attempted = demand + inserted.rejected;
+    if (report.dropped == 0) return true;
 
-    // Room for all: they are in the partitions, or are inserted again.
-    if (demand > plan.records || inserted.dropped == 0) {
-        const bool moves = inserted.dropped == 0 &&
-                           bytes_with(demand) + plan.bytes() <= options_.budget_bytes;
-        if (!moves) partitions_.reset();
+    if (inserted.dropped == 0 && has_room_for(bytes_with(demand) + plan.bytes())) {
+        // All are in the partitions, and the pool is too small for them.
         require(demand, report);
         grow_pool(demand, report);
-        if (moves) {
-            clear_heads_and_counters(0, 0, 0);
-            move_from_partitions();
-            report.capacity_nodes = capacity_nodes_;
-        } else {
-            partitions_ = partitions_for_pool();
-        }
-        return moves;
+        clear_heads_and_counters(0, 0, 0);
+        move_from_partitions();
+        update(report, inserted, demand);
+        return true;
     }
-    // A thread has found no place in them.
-    not_for_partitions_ = plan.records;
     partitions_.reset();
+    if (inserted.dropped > 0 && demand <= plan.records) {
+        // A thread has found no place: this build counts.
+        no_place_up_to_ = plan.records;
+        return false;
+    }
+    require(demand, report);
+    grow_pool(demand, report);
+    partitions_ = partitions_for_pool();
     return false;
 }
 

@@ -63,6 +63,7 @@ private:
     [[nodiscard]] std::unique_ptr<Partitions> partitions_for_pool() const;
     void move_from_partitions();
     bool review_partitions(BuildReport& report);
+    [[nodiscard]] bool has_room_for(std::uint64_t all_bytes) const;
     void make_room(const BuildReport& report);
     Reading find_unfilled(Findings& findings);
     [[nodiscard]] cl_uint counts_at() const { return static_cast<cl_uint>(shape_.cells() + 1); }
@@ -73,8 +74,8 @@ private:
     CellScan::Totals demand_;
     Findings filled_;  ///< of the filling pass
     std::optional<Kernel> validate_;
-    std::unique_ptr<Partitions> partitions_;  ///< of this build; null if it counts
-    std::uint64_t not_for_partitions_ = 0;    ///< records that they had room for and did not take
+    std::unique_ptr<Partitions> partitions_;  ///< kept between builds; null where these count
+    std::uint64_t no_place_up_to_ = 0;  ///< this capacity; a thread found none in the partitions for it
     cl_uint partitioned_ = 0;                 ///< records of the last pass
     std::optional<Kernel> partition_starts_;
     std::optional<Kernel> move_partition_;

@@ -225,7 +225,7 @@ public:
     [[nodiscard]] const Shape& shape() const { return core_->shape(); }
     /// Nodes in the pool.
     [[nodiscard]] std::uint64_t capacity_nodes() const { return core_->capacity_nodes(); }
-    /// Device memory of heads, nodes and counters.
+    /// Device memory of heads, nodes and counters, and of what sorts and builds keep for the next ones.
     [[nodiscard]] std::uint64_t pool_bytes() const { return core_->pool_bytes(); }
     /// The storage in use: in Storage::automatic the one of the last build.
     [[nodiscard]] Storage storage() const { return core_->storage_in_use(); }

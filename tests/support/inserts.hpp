@@ -159,8 +159,9 @@ inline void require_complete(const BuildReport& report, std::uint64_t stored,
 /// fills, but on processors whose threads have partitions of the cells.
 inline std::uint32_t passes_of(Storage storage, std::uint64_t capacity_nodes) {
     const DeviceInfo& info = device().info();
+    const std::uint64_t threads = info.compute_units;
     const bool partitions =
-        info.threads && capacity_nodes >= std::uint64_t{1024} * info.compute_units;
+        info.threads && capacity_nodes >= 1024 * threads * std::max<std::uint64_t>(threads / 2, 1);
     return storage == Storage::counted && !partitions ? 2 : 1;
 }
 

@@ -21,7 +21,7 @@ constexpr double nearly = 1.25;
 // Short frames are drawn more often, until they have taken so long.
 constexpr double enough_ms = 200;
 constexpr std::size_t most_runs = 200;
-// Of the layers of a pixel, where float does not tell one.
+// Orders of a pixel's layers that are tried, at most.
 constexpr int most_orders = 5000;
 
 Reference reference_of(const Frame& frame) {
@@ -54,8 +54,8 @@ Truth::Truth(const cellist::Device& device, const Frame& frame) : reference_(ref
     const Frame exact = with_setting(frame, setting);
     Renderer renderer(device, exact, *setting.method);
     renderer.draw();
-    drawn_ = renderer.image();
-    for (std::size_t p = 0; p < drawn_.size(); ++p) {
+    const std::vector<cl_float4> drawn = renderer.image();
+    for (std::size_t p = 0; p < drawn.size(); ++p) {
         if (!reference_.ambiguous[p]) continue;
         std::vector<Colour>& colours = as_right_[p];
         const auto take = [&](const glm::dvec3& colour) {
@@ -65,7 +65,7 @@ Truth::Truth(const cellist::Device& device, const Frame& frame) : reference_(ref
             if (std::ranges::find(colours, encoded) == colours.end()) colours.push_back(encoded);
             return false;
         };
-        take({drawn_[p].s[0], drawn_[p].s[1], drawn_[p].s[2]});
+        take({drawn[p].s[0], drawn[p].s[1], drawn[p].s[2]});
         bench::any_other_order(reference_, p, frame.quality.samples, most_orders, take);
     }
 }
@@ -74,12 +74,12 @@ PictureErrors Truth::errors_of(std::span<const cl_float4> image) const {
     const auto channels = 3 * static_cast<double>(image.size());
     PictureErrors errors;
     for (std::size_t p = 0; p < image.size(); ++p) {
-        Colour is, is_right;
+        Colour is, expected;
         for (std::size_t c = 0; c < is.size(); ++c) {
             is[c] = support::srgb_from_linear(static_cast<double>(image[p].s[c]));
-            is_right[c] = support::srgb_from_linear(reference_.image[p][static_cast<int>(c)]);
+            expected[c] = support::srgb_from_linear(reference_.image[p][static_cast<int>(c)]);
         }
-        const ChannelErrors off = difference(is, is_right);
+        const ChannelErrors off = difference(is, expected);
         add(errors.all, off, channels);
         ChannelErrors told = off;
         if (const auto others = as_right_.find(p); others != as_right_.end())

@@ -36,7 +36,6 @@ private:
     using Colour = std::array<double, 3>;  // encoded
 
     Reference reference_;
-    std::vector<cl_float4> drawn_;
     std::map<std::size_t, std::vector<Colour>> as_right_;  // by pixel whose order is not told
 };
 

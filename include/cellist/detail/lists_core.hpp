@@ -107,6 +107,7 @@ public:
     void settle() const;
     /// The same where what is enqueued next would otherwise find incomplete lists.
     void settle_for_commands() const;
+    void refuse_while_open() const;
 
     // For Build.
     [[nodiscard]] ListStorage& storage() const { return *storage_; }

@@ -18,7 +18,7 @@ public:
     Memory() = default;
     /// `count` elements of `element_bytes`. Throws Error beyond the device's limit, naming `what`.
     Memory(std::shared_ptr<DeviceState> state, std::uint64_t count, std::size_t element_bytes,
-           const char* what = "buffer");
+           const char* what = "buffer", cl_mem_flags flags = CL_MEM_READ_WRITE);
 
     Memory(Memory&&) noexcept = default;
     Memory& operator=(Memory&&) noexcept = default;
