@@ -46,8 +46,8 @@ std::optional<Partitions::Plan> Partitions::plan(const DeviceInfo& device, std::
     while ((cells - 1) >> plan.bits >= most) ++plan.bits;
     plan.partitions = static_cast<cl_uint>((cells - 1) >> plan.bits) + 1;
     plan.hands = hands_of(device);
-    plan.nodes = (plan.records / CELLIST_BLOCK_NODES + 1) * CELLIST_BLOCK_NODES +
-                 plan.partitions * unfilled;
+    plan.nodes =
+        (plan.records / CELLIST_BLOCK_NODES + 1) * CELLIST_BLOCK_NODES + plan.partitions * unfilled;
     if (plan.nodes > CELLIST_CAPACITY_NODES_MAX ||
         plan.nodes * node_bytes > device.max_allocation_bytes)
         return {};

@@ -82,9 +82,7 @@ cellist_view ListStorage::view() const {
             0};
 }
 
-void ListStorage::add_to(Arguments& arguments) const {
-    add_to(arguments, nodes_, heads_, view());
-}
+void ListStorage::add_to(Arguments& arguments) const { add_to(arguments, nodes_, heads_, view()); }
 
 void ListStorage::add_to(Arguments& arguments, const Memory& nodes, const Memory& heads,
                          const cellist_view& view) const {

@@ -102,7 +102,8 @@ bool CountedStorage::finish_pass() {
 /// Enqueues what turns partitions into lists, if the pool has room for them.
 void CountedStorage::move_from_partitions() {
     if (!move_partition_) {
-        partition_starts_.emplace(kernel("cellist_partition_starts", kernels::partitions_cl, mode_));
+        partition_starts_.emplace(
+            kernel("cellist_partition_starts", kernels::partitions_cl, mode_));
         move_partition_.emplace(kernel("cellist_move_partition", kernels::partitions_cl, mode_));
     }
     const Partitions::Plan& plan = partitions_->plan();

@@ -75,8 +75,9 @@ private:
     Findings filled_;  ///< of the filling pass
     std::optional<Kernel> validate_;
     std::unique_ptr<Partitions> partitions_;  ///< kept between builds; null where these count
-    std::uint64_t no_place_up_to_ = 0;  ///< this capacity; a thread found none in the partitions for it
-    cl_uint partitioned_ = 0;                 ///< records of the last pass
+    std::uint64_t no_place_up_to_ =
+        0;                     ///< this capacity; a thread found none in the partitions for it
+    cl_uint partitioned_ = 0;  ///< records of the last pass
     std::optional<Kernel> partition_starts_;
     std::optional<Kernel> move_partition_;
 };

@@ -110,7 +110,8 @@ TEST_CASE("every way to insert, and several kernels, share the partitions of a b
         REQUIRE(report.passes == (build == 0 ? 2 : passes_of(Storage::counted, total)));
         require_sound(lists, total);
         const HostLists<Item> found = lists.download();
-        for (cl_uint cell = 0; cell < cells; ++cell) REQUIRE(found.cell(cell).size() == expected[cell]);
+        for (cl_uint cell = 0; cell < cells; ++cell)
+            REQUIRE(found.cell(cell).size() == expected[cell]);
     }
 }
 
@@ -141,8 +142,7 @@ TEST_CASE("kernels that know no threads count and fill") {
     const Buffer<cl_uint> cells(device(), inserts.cells);
     const Buffer<Item> records(device(), inserts.records);
     Lists<Item> lists(device(), {300}, {.storage = Storage::counted});
-    Kernel kernel(device(),
-                  Source{.text = insert_source("Item"), .options = "-DCELLIST_THREADS=0"},
+    Kernel kernel(device(), Source{.text = insert_source("Item"), .options = "-DCELLIST_THREADS=0"},
                   "insert_all", lists);
     for (int build = 0; build < 4; ++build) {
         const BuildReport report =
@@ -195,8 +195,9 @@ TEST_CASE("what does not fit the budget leaves empty lists, with the partitions 
 
 TEST_CASE("the report of a build that fails says what the pool could hold") {
     CELLIST_RANDOM(random, 915u);
-    Lists<Item> lists(device(), {300},
-                      {.storage = Storage::counted, .capacity_nodes = 80'000, .budget_bytes = 4'000'000});
+    Lists<Item> lists(
+        device(), {300},
+        {.storage = Storage::counted, .capacity_nodes = 80'000, .budget_bytes = 4'000'000});
     const Inserts<Item> many = random_inserts(600'000, 300, random);
     const auto error = error_of<OverflowError>([&] { Inserter<Item>(lists).build(lists, many); });
     REQUIRE(error.report().stored == 80'000);
@@ -211,14 +212,13 @@ TEST_CASE("the function that inserts cannot use the container otherwise") {
     const Inserts<Item> inserts = random_inserts(20'000, 300, random);
     Lists<Item> lists(device(), {300}, {.storage = storage});
     Inserter<Item> inserter(lists);
-    const std::vector<std::function<void()>> uses{
-        [&] { lists.clear(); },
-        [&] { static_cast<void>(lists.validate()); },
-        [&] { lists.sort(&Item::key); },
-        [&] { lists.sort_async(&Item::key); },
-        [&] { static_cast<void>(lists.download()); },
-        [&] { static_cast<void>(lists.lengths()); },
-        [&] { static_cast<void>(lists.pack()); }};
+    const std::vector<std::function<void()>> uses{[&] { lists.clear(); },
+                                                  [&] { static_cast<void>(lists.validate()); },
+                                                  [&] { lists.sort(&Item::key); },
+                                                  [&] { lists.sort_async(&Item::key); },
+                                                  [&] { static_cast<void>(lists.download()); },
+                                                  [&] { static_cast<void>(lists.lengths()); },
+                                                  [&] { static_cast<void>(lists.pack()); }};
     for (const std::function<void()>& use : uses) {
         require_complete(inserter.build(lists, inserts), 20'000);
         const auto error = error_of<Error>([&] {

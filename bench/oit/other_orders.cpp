@@ -76,7 +76,9 @@ bool any_other_order(const oit::Reference& reference, std::size_t pixel, int sam
     const std::vector<Group> groups = groups_of(fragments);
     std::vector<std::size_t> order(fragments.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto light = [&] { return light_of(fragments, order, static_cast<std::size_t>(samples)); };
+    const auto light = [&] {
+        return light_of(fragments, order, static_cast<std::size_t>(samples));
+    };
     const glm::dvec3 behind = reference.image[pixel] - light();
     for (int tried = 0; tried < most && next_order(order, groups); ++tried)
         if (use(behind + light())) return true;

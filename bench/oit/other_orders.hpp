@@ -4,8 +4,9 @@
 #include <functional>
 #include <span>
 
-#include <cellist/opencl.hpp>
 #include <glm/vec3.hpp>
+
+#include <cellist/opencl.hpp>
 
 #include "reference.hpp"
 

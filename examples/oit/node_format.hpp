@@ -34,6 +34,11 @@ inline constexpr std::array<NodeFormatName, 5> node_formats{{
     {NodeFormat::rgb565_d16, "rgb565_d16"},
 }};
 
+/// Whether depth is kept as the float that it was computed as.
+[[nodiscard]] constexpr bool has_float_depth(NodeFormat format) {
+    return format != NodeFormat::rgba8_d24c8 && format != NodeFormat::rgb565_d16;
+}
+
 [[nodiscard]] constexpr std::string_view name_of(NodeFormat format) {
     for (const NodeFormatName& entry : node_formats)
         if (entry.format == format) return entry.name;

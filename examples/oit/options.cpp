@@ -114,6 +114,8 @@ Options parse_options(int count, const char* const* arguments) {
     frame.read(options);
     options.out = out;
     options.json = json;
+    if (options.json.lexically_normal() == options.out.lexically_normal())
+        throw support::InputError("--out and --json name the same file");
     if (!budget.empty()) {
         options.budget = parse_budget(budget);
         for (const char* chosen : {"--method", "--layers", "--epsilon", "--format"})
@@ -124,6 +126,10 @@ Options parse_options(int count, const char* const* arguments) {
             if (app.count(unknown) > 0)
                 throw support::InputError("--budget compares settings without " +
                                           std::string(unknown) + ": leave one of them out");
+        if (options.blend_function)
+            throw support::InputError(
+                "--budget knows no bound of the errors of a function of your own: leave one of "
+                "them out");
     }
     options.check_every = static_cast<std::uint32_t>(
         support::read_number("--check-every", check_every, 1, 1'000'000));
@@ -132,6 +138,10 @@ Options parse_options(int count, const char* const* arguments) {
             read_between("--until", until, -1e6, 1e6, "seconds from -1000000 to 1000000");
     options.turn_degrees = read_between("--turn", turn, -1e6, 1e6, "degrees");
     read_method(method, options);
+    for (const char* of_nodes : {"--epsilon", "--format"})
+        if (app.count(of_nodes) > 0 && !method_named(options.method).has_nodes)
+            throw support::InputError("--method " + options.method +
+                                      " keeps no fragments: leave out " + std::string(of_nodes));
     read_layers(layers, options);
     read_format(format, options);
     read_reduce(reduce, options);

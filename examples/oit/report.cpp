@@ -68,8 +68,9 @@ void print_comparison(const Report& report, const Line& line) {
                                     : "differ in " + counted(c.pixels_with_other_count, "pixel") +
                                           ", reference has " + grouped(c.fragments) + " in all")
                             << '\n';
-    line("depth error") << fixed(c.max_depth_error * (1 << 24), 2)
-                        << " * 2^-24 at most (bound: 8)\n";
+    line("depth error") << fixed(c.max_depth_error * (1 << 24), 2) << " * 2^-24 at most"
+                        << (has_float_depth(report.options.quality.format) ? " (bound: 8)" : "")
+                        << '\n';
 }
 
 void print_method(const Report& report, const Line& line) {

@@ -13,6 +13,10 @@ std::optional<std::string> parse_command_line(CLI::App& app, int count,
                                               const char* const* arguments) {
     try {
         app.parse(count, arguments);
+        // Most likely a variable of the shell that is not set.
+        for (const CLI::Option* option : app.get_options())
+            for (const std::string& value : option->results())
+                if (value.empty()) throw InputError(option->get_name() + ": the value is empty");
     } catch (const CLI::CallForHelp&) {
         return app.help();
     } catch (const CLI::ParseError& error) {

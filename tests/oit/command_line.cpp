@@ -43,6 +43,9 @@ TEST_CASE("bad arguments are refused") {
              {"--format rgba9", "rgb565_d16"},
              {"--depth-scale odd", "odd"},
              {"--epsilon 1.5", "1.5"},
+             {"--method weighted --epsilon 0.1", "keeps no fragments"},
+             {"--method moments --format rgba8", "keeps no fragments"},
+             {"--out x.png --json ./x.png", "same file"},
              {"--epsilon nan", "nan"},
              {"--stereo -1", "-1"},
              {"--time inf", "inf"},
@@ -129,6 +132,8 @@ TEST_CASE("the user's function is read from a file, and its failures are told") 
     CHECK_FALSE(contains(fine.out, "NaN"));
     CHECK(program.run(run + "'" CELLIST_FOG_PATH "'").exit_code == 0);
     program.require_refused("knot.obj --size 64x48 --reference --blend fine.cl", "reference");
+    program.require_refused("knot.obj --size 64x48 --budget 40dB --blend fine.cl", "--budget");
+    program.require_refused("knot.obj --budget ''", "empty");
     CHECK(contains(program.run(run + "nan.cl").out, "NaN"));
     const Outcome bad = program.run(run + "bad.cl");
     CHECK(bad.exit_code == 1);
