@@ -18,12 +18,13 @@ struct Wide {
     cl_double at;
     cl_float color[4];
     cl_uint id;
+    cl_uint other;
 };
-CELLIST_STRUCT(Wide, at, color, id);
+CELLIST_STRUCT(Wide, at, color, id, other);
 
 Word make(cl_uint id, const Word*) { return {id}; }
 Item make(cl_uint id, const Item*) { return {static_cast<cl_float>(id % 97), id}; }
-Wide make(cl_uint id, const Wide*) { return {0.5 * id, {1.0f, 2.0f, 3.0f, 4.0f}, id}; }
+Wide make(cl_uint id, const Wide*) { return {0.5 * id, {1.0f, 2.0f, 3.0f, 4.0f}, id, ~id}; }
 
 /// Which cell the i-th record goes to: any, neighbours by turns, runs, or one.
 cl_uint cell_of(std::uint32_t pattern, std::uint32_t i, std::uint32_t cells, std::mt19937& random) {
