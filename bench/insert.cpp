@@ -1,6 +1,7 @@
-// Inserting alone: what the device takes for the runs of the user's kernel in a build: two of them in
-// Storage::counted, or one where the library moves the records afterwards, which is not part of it. Runs of the ceiling are taken by turns with those of the insert, so that the
-// fraction of it that is reached does not depend on what else the machine does.
+// Inserting alone: what the device takes for the runs of the user's kernel in a build. In Storage::counted these
+// are two, or one where the library moves the records afterwards, which is not part of it. Runs of the ceiling
+// are taken by turns with those of the insert, so that the fraction of it that is reached does not depend on what
+// else the machine does.
 
 #include <numeric>
 

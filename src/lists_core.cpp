@@ -98,7 +98,6 @@ void ListsCore::add_to(Arguments& arguments) const {
     storage_->add_to(arguments);
 }
 
-/// Throws Error where the function that inserts uses the container that it fills.
 void ListsCore::refuse_while_open() const {
     if (storage_->is_open())
         throw Error("a container is used while it is built: kernels may insert, and no more");

@@ -107,6 +107,7 @@ public:
     void settle() const;
     /// The same where what is enqueued next would otherwise find incomplete lists.
     void settle_for_commands() const;
+    /// Throws Error where the function that inserts uses the container that it fills.
     void refuse_while_open() const;
 
     // For Build.
