@@ -11,7 +11,7 @@
 namespace cellist::detail {
 
 Memory::Memory(std::shared_ptr<DeviceState> state, std::uint64_t count, std::size_t element_bytes,
-               const char* what, cl_mem_flags flags)
+               const char* what)
     : state_(std::move(state)) {
     const std::uint64_t limit = state_->info.max_allocation_bytes;
     if (count > limit / element_bytes)
@@ -19,6 +19,9 @@ Memory::Memory(std::shared_ptr<DeviceState> state, std::uint64_t count, std::siz
                     std::to_string(element_bytes) + " bytes exceeds this device's limit of " +
                     std::to_string(limit) + " bytes per allocation");
     size_bytes_ = count * element_bytes;
+    // PoCL looks for memory at a buffer's first use, and aborts where there is none. So it is asked for now.
+    cl_mem_flags flags = CL_MEM_READ_WRITE;
+    if ((state_->info.type & CL_DEVICE_TYPE_CPU) != 0) flags |= CL_MEM_ALLOC_HOST_PTR;
     opencl([&] {
         buffer_ = cl::Buffer(state_->context, flags, std::max<std::uint64_t>(size_bytes_, 1));
     });

@@ -16,9 +16,6 @@ constexpr std::uint64_t unfilled_part = 4;
 /// Room for growth: this part of the records.
 constexpr std::uint64_t growth_part = 8;
 
-/// PoCL aborts where it finds no memory for a buffer at its first use. So it looks for it now.
-constexpr cl_mem_flags at_once = CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR;
-
 }  // namespace
 
 std::uint64_t Partitions::Plan::words_to_clear() const {
@@ -56,10 +53,10 @@ std::optional<Partitions::Plan> Partitions::plan(const DeviceInfo& device, std::
 
 Partitions::Partitions(const std::shared_ptr<DeviceState>& device, const Plan& plan)
     : plan_(plan),
-      nodes_(device, plan.nodes, plan.node_bytes, "partitions", at_once),
-      heads_(device, plan.head_words(), sizeof(cl_uint), "heads of partitions", at_once),
-      starts_(device, 1 + std::uint64_t{plan.partitions}, sizeof(cl_uint), "starts of partitions",
-              at_once) {}
+      nodes_(device, plan.nodes, plan.node_bytes, "partitions"),
+      heads_(device, plan.head_words(), sizeof(cl_uint), "heads of partitions"),
+      starts_(device, 1 + std::uint64_t{plan.partitions}, sizeof(cl_uint), "starts of partitions") {
+}
 
 std::unique_ptr<Partitions> Partitions::make(const std::shared_ptr<DeviceState>& device,
                                              const Plan& plan) {

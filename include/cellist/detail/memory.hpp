@@ -16,9 +16,10 @@ struct DeviceState;
 class Memory {
 public:
     Memory() = default;
-    /// `count` elements of `element_bytes`. Throws Error beyond the device's limit, naming `what`.
+    /// `count` elements of `element_bytes`. Throws Error beyond the device's limit, naming `what`, and
+    /// OpenClError where there is no memory; a GPU's driver may tell so at the first use only.
     Memory(std::shared_ptr<DeviceState> state, std::uint64_t count, std::size_t element_bytes,
-           const char* what = "buffer", cl_mem_flags flags = CL_MEM_READ_WRITE);
+           const char* what = "buffer");
 
     Memory(Memory&&) noexcept = default;
     Memory& operator=(Memory&&) noexcept = default;
