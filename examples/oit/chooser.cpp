@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "first_line.hpp"
 #include "input_error.hpp"
 #include "stopwatch.hpp"
 
@@ -95,10 +96,12 @@ public:
         : device_(chooser.device_),
           frame_(chooser.frame_),
           budget_(chooser.budget_),
+          progress_(chooser.progress_),
           survey_(chooser.survey_) {}
 
     Choice run() {
         const support::Stopwatch stopwatch;
+        progress_(0);
         choice_.scene = survey_.measure(frame_);
         choice_.draws = 1;
         const std::vector<Setting> settings = settings_for(frame_, choice_.scene.longest);
@@ -114,11 +117,15 @@ public:
                 others.push_back(setting);
             else
                 leaders.push_back(setting);
-        for (std::size_t i = 1; i < leaders.size(); ++i) consider(leaders[i]);
-        for (const Setting& setting : others)
-            if (text(setting) != text(exact)) consider(setting);
+        std::erase_if(others, [&](const Setting& s) { return text(s) == text(exact); });
+        leaders.insert(leaders.end(), others.begin(), others.end());
+        for (std::size_t i = 1; i < leaders.size(); ++i) {
+            progress_(static_cast<double>(i) / static_cast<double>(leaders.size()));
+            consider(leaders[i]);
+        }
         play_off();
         finish();
+        progress_(1);
         choice_.took_ms = stopwatch.ms();
         return std::move(choice_);
     }
@@ -172,9 +179,8 @@ private:
             contender->renderer.warm_up();
             slower = is_slower(*contender, first_margin);
         } catch (const std::exception& error) {
-            const std::string message = error.what();
             candidate.fate = Fate::failed;
-            candidate.failure = message.substr(0, message.find('\n'));
+            candidate.failure = support::first_line(error.what());
             choice_.candidates.push_back(candidate);
             return;
         }
@@ -359,6 +365,7 @@ private:
     const cellist::Device& device_;
     const Frame& frame_;
     const Budget& budget_;
+    const std::function<void(double)>& progress_;
     Survey& survey_;
     Choice choice_;
     std::vector<std::shared_ptr<Contender>> contenders_;  // within the budget
@@ -373,10 +380,12 @@ private:
     std::map<std::pair<std::string_view, Series>, std::size_t> met_;
 };
 
-Chooser::Chooser(const cellist::Device& device, const Frame& frame, const Budget& budget)
+Chooser::Chooser(const cellist::Device& device, const Frame& frame, const Budget& budget,
+                 std::function<void(double)> progress)
     : device_(device),
       frame_(frame),
       budget_(budget),
+      progress_(std::move(progress)),
       survey_(device, frame, layer_counts_of(settings_for(frame, all_layers)),
               epsilons_of(settings_for(frame, all_layers))) {}
 

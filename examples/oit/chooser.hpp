@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -62,8 +63,10 @@ public:
     static constexpr double as_fast = 1.03;
 
     /// Refers to the device and the frame, which must outlive it. Samples and how depths are scaled are
-    /// the frame's; its format, size, layers and epsilon do not matter.
-    Chooser(const cellist::Device& device, const Frame& frame, const Budget& budget);
+    /// the frame's; its format, size, layers and epsilon do not matter. `progress` is told how far a
+    /// search is, from 0 to 1.
+    Chooser(const cellist::Device& device, const Frame& frame, const Budget& budget,
+            std::function<void(double)> progress);
     ~Chooser();
 
     /// Surveys the frame as it is now, in time and views, and chooses. Blocks, for some dozens of
@@ -86,6 +89,7 @@ private:
     const cellist::Device& device_;
     const Frame& frame_;
     Budget budget_;
+    std::function<void(double)> progress_;
     Survey survey_;
     std::shared_ptr<Contender> winner_;
 };

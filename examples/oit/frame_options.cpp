@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include "command_line.hpp"
+#include "image.hpp"
 #include "input_error.hpp"
 #include "mesh.hpp"
 #include "method.hpp"
@@ -118,6 +119,13 @@ void set_blend(Scene& scene, Blend blend) {
             material.blend = static_cast<cl_uint>(blend);
 }
 
+bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+    const auto full = [](const std::filesystem::path& path) {
+        return std::filesystem::weakly_canonical(std::filesystem::absolute(path));
+    };
+    return full(a) == full(b);
+}
+
 // The largest buffers of a frame: image and opaque colour with 16 bytes a sample.
 void check_size(const FrameOptions& options, const cellist::Device& device) {
     const std::string size =
@@ -149,6 +157,22 @@ double read_between(const std::string& option, const std::string& text, double l
     const auto value = parse<double>(text);
     if (!value || !(*value >= least && *value <= most)) refuse(option, text, expected);
     return *value;
+}
+
+void check_outputs(const FrameOptions& options, std::span<const Output> outputs) {
+    std::vector<Output> known;
+    if (find_scene(options.scene) == nullptr) known.emplace_back("the mesh", options.scene);
+    if (options.blend_function) known.emplace_back("--blend", options.blend_function->file_name);
+    for (const Output& output : outputs) {
+        const auto& [name, path] = output;
+        if (path.empty()) continue;
+        support::check_image_path(path);
+        for (const auto& [other, its_path] : known)
+            if (same_file(path, its_path))
+                throw InputError(std::string(name) + " and " + std::string(other) +
+                                 " name the same file, '" + path.string() + "'");
+        known.push_back(output);
+    }
 }
 
 std::string help_on_tables() {
@@ -226,8 +250,12 @@ void FrameArguments::read(FrameOptions& options) const {
         options.eye_separation = read_between("--stereo", eyes_, 0, 1, "a distance from 0 to 1");
     options.time = read_between("--time", time_, -1e6, 1e6, "seconds from -1000000 to 1000000");
     options.quality.depth_range = depth_range_;
-    if (depth_range_ && options.quality.samples == 1)
-        throw InputError("--depth-range needs several samples: add --samples 2, 4 or 8");
+    for (const auto& [option, given] :
+         {std::pair("--depth-range", depth_range_),
+          std::pair("--resolve sample", options.quality.resolve == Resolve::per_sample)})
+        if (given && options.quality.samples == 1)
+            throw InputError(std::string(option) +
+                             " needs several samples: add --samples 2, 4 or 8");
 }
 
 cellist::Device choose_device(const FrameOptions& options) {
@@ -242,6 +270,10 @@ Scene make_scene(const FrameOptions& options) {
     if (const SceneInfo* info = find_scene(options.scene)) {
         scene = info->make(options.alpha);
     } else {
+        std::error_code error;
+        if (!std::filesystem::exists(options.scene, error))
+            throw InputError("'" + options.scene +
+                             "' is neither a file nor a scene; --help lists the scenes");
         support::Mesh mesh = support::load_mesh(options.scene);
         support::fit_to_unit_sphere(mesh);
         scene = scene_of(std::move(mesh), options.alpha);

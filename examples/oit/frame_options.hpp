@@ -3,7 +3,10 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <cellist/cellist.hpp>
@@ -57,6 +60,13 @@ void add_option(CLI::App& app, const char* name, std::string& value, const char*
 /// The text of an option as a number. Throws InputError unless least <= number <= most.
 [[nodiscard]] double read_between(const std::string& option, const std::string& text, double least,
                                   double most, const std::string& expected);
+
+/// An option that names a file to write, and the file; it may be empty, and is not written then.
+using Output = std::pair<std::string_view, std::filesystem::path>;
+
+/// Throws InputError unless each of the files can be written, and none is another or one that the
+/// options read.
+void check_outputs(const FrameOptions& options, std::span<const Output> outputs);
 
 /// For the end of a help text: all methods and scenes.
 [[nodiscard]] std::string help_on_tables();

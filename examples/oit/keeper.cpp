@@ -16,8 +16,11 @@ bool same_views(const Frame& a, const Frame& b) {
 }  // namespace
 
 Keeper::Keeper(const cellist::Device& device, const Frame& frame, const Budget& budget,
-               std::uint32_t check_every)
-    : chooser_(device, frame, budget), budget_(budget), check_every_(check_every), now_(frame) {
+               std::uint32_t check_every, std::function<void(double)> progress)
+    : chooser_(device, frame, budget, std::move(progress)),
+      budget_(budget),
+      check_every_(check_every),
+      now_(frame) {
     choose();
 }
 

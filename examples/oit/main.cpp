@@ -1,5 +1,6 @@
 #include <functional>
 #include <iostream>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -19,11 +20,6 @@
 #include "stopwatch.hpp"
 
 namespace {
-
-void check_output_paths(const oit::Options& options) {
-    support::check_image_path(options.out);
-    if (!options.json.empty()) support::check_image_path(options.json);
-}
 
 oit::PassTimes median_times(const std::vector<oit::PassTimes>& frames) {
     const auto of = [&](double oit::PassTimes::*pass) {
@@ -140,7 +136,6 @@ void write(oit::Report& report, const oit::Frame& frame, const oit::Renderer& re
 
 // The exit code: 2 where no setting meets the budget.
 int run(const oit::Options& options) {
-    check_output_paths(options);
     const cellist::Device device = oit::choose_device(options);
     oit::Scene scene = oit::make_scene(options);
     oit::Report report;
@@ -157,7 +152,13 @@ int run(const oit::Options& options) {
         return 0;
     }
     set_moment(frame, options, 0, options.frames);
-    oit::Keeper keeper(device, frame, *options.budget, options.check_every);
+    std::optional<support::Progress> choosing;
+    const auto show_choosing = [&](double part) {
+        if (!choosing) choosing.emplace("choosing a setting");
+        choosing->update(part);
+        if (part == 1) choosing.reset();
+    };
+    oit::Keeper keeper(device, frame, *options.budget, options.check_every, show_choosing);
     draw_within_budget(report, keeper, frame);
     // The reference is that of all layers.
     write(report, frame, keeper.renderer());

@@ -6,6 +6,7 @@
 #include <exception>
 #include <numeric>
 
+#include "first_line.hpp"
 #include "renderer.hpp"
 #include "stopwatch.hpp"
 
@@ -31,11 +32,6 @@ double quantile(const std::vector<double>& sorted, double part) {
     return std::lerp(sorted[below], sorted[above], place - static_cast<double>(below));
 }
 
-std::string reason(const std::exception& error) {
-    const std::string message = error.what();
-    return message.substr(0, message.find('\n'));
-}
-
 }  // namespace
 
 void Measurement::add(const std::vector<double>& more) {
@@ -58,7 +54,7 @@ Measurement measure(const cellist::Device& device, const Frame& frame, const Set
         result.bytes = renderer.method().device_bytes();
         result.image = renderer.image();
     } catch (const std::exception& error) {
-        result.failure = reason(error);
+        result.failure = support::first_line(error.what());
         return result;
     }
     result.comparison = compare(reference, result.image, {});
@@ -74,7 +70,7 @@ void measure_again(const cellist::Device& device, const Frame& frame, std::uint3
         Renderer renderer(device, drawn, *measurement.setting.method);
         measurement.add(time_frames(renderer, frames));
     } catch (const std::exception& error) {
-        measurement.failure = reason(error);
+        measurement.failure = support::first_line(error.what());
     }
 }
 

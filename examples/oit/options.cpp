@@ -114,9 +114,12 @@ Options parse_options(int count, const char* const* arguments) {
     frame.read(options);
     options.out = out;
     options.json = json;
-    if (options.json.lexically_normal() == options.out.lexically_normal())
-        throw support::InputError("--out and --json name the same file");
-    if (!budget.empty()) {
+    const Output outputs[] = {{"--out", options.out}, {"--json", options.json}};
+    check_outputs(options, outputs);
+    if (budget.empty()) {
+        if (app.count("--check-every") > 0)
+            throw support::InputError("--check-every is for --budget, which is not given");
+    } else {
         options.budget = parse_budget(budget);
         for (const char* chosen : {"--method", "--layers", "--epsilon", "--format"})
             if (app.count(chosen) > 0)
@@ -136,7 +139,8 @@ Options parse_options(int count, const char* const* arguments) {
     if (!until.empty())
         options.until =
             read_between("--until", until, -1e6, 1e6, "seconds from -1000000 to 1000000");
-    options.turn_degrees = read_between("--turn", turn, -1e6, 1e6, "degrees");
+    options.turn_degrees =
+        read_between("--turn", turn, -1e6, 1e6, "degrees from -1000000 to 1000000");
     read_method(method, options);
     for (const char* of_nodes : {"--epsilon", "--format"})
         if (app.count(of_nodes) > 0 && !method_named(options.method).has_nodes)
@@ -144,12 +148,19 @@ Options parse_options(int count, const char* const* arguments) {
                                       " keeps no fragments: leave out " + std::string(of_nodes));
     read_layers(layers, options);
     read_format(format, options);
+    if (app.count("--depth-scale") > 0 && !options.budget &&
+        has_float_depth(options.quality.format))
+        throw support::InputError("--depth-scale is for depths of 16 and 24 bits, and --format " +
+                                  format + " has floats");
     read_reduce(reduce, options);
     read_memory(memory, options);
     options.quality.epsilon =
         static_cast<float>(read_between("--epsilon", epsilon, 0, 1, "a number from 0 to 1"));
     options.frames =
         static_cast<std::uint32_t>(support::read_number("--frames", frames, 1, 1'000'000));
+    for (const char* moves : {"--until", "--turn"})
+        if (app.count(moves) > 0 && options.frames == 1)
+            throw support::InputError(std::string(moves) + " needs several frames: --frames is 1");
     return options;
 }
 

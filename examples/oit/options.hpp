@@ -26,7 +26,7 @@ struct Options : FrameOptions {
     std::string help_text = {};
 };
 
-/// Reads and checks the command line, and the file of a blend function. Throws InputError where an
+/// Reads and checks the command line, the paths of the output and the file of a blend function. Throws InputError where an
 /// argument cannot be used.
 [[nodiscard]] Options parse_options(int count, const char* const* arguments);
 

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "first_line.hpp"
 #include "input_error.hpp"
 
 namespace support {
@@ -20,8 +21,7 @@ std::optional<std::string> parse_command_line(CLI::App& app, int count,
     } catch (const CLI::CallForHelp&) {
         return app.help();
     } catch (const CLI::ParseError& error) {
-        const std::string text = error.what();
-        throw InputError(text.substr(0, text.find('\n')) + " (see --help)");
+        throw InputError(first_line(error.what()) + " (see --help)");
     }
     return {};
 }
@@ -63,7 +63,7 @@ std::string to_string(cellist::Storage storage) {
 }
 
 void print_error(const std::string& name, const std::string& message) {
-    std::cerr << name << ": " << message.substr(0, message.find('\n')) << '\n';
+    std::cerr << name << ": " << first_line(message) << '\n';
 }
 
 }  // namespace support

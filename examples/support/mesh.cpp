@@ -19,6 +19,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
 
+#include "first_line.hpp"
 #include "input_error.hpp"
 
 namespace support {
@@ -191,8 +192,6 @@ void turn_towards_normals(Mesh& mesh) {
         if (glm::dot(glm::cross(b - a, c - a), corner_normals) < 0) std::swap(t[1], t[2]);
     }
 }
-
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 }  // namespace
 

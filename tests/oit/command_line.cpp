@@ -46,6 +46,14 @@ TEST_CASE("bad arguments are refused") {
              {"--method weighted --epsilon 0.1", "keeps no fragments"},
              {"--method moments --format rgba8", "keeps no fragments"},
              {"--out x.png --json ./x.png", "same file"},
+             {"--out knot.obj", "the mesh"},
+             {"--resolve sample", "--samples"},
+             {"--depth-scale reversed", "16 and 24 bits"},
+             {"--depth-scale reversed --format rgba16f", "rgba16f"},
+             {"--check-every 2", "--budget"},
+             {"--turn 90 --frames 1", "--frames is 1"},
+             {"--until 1 --frames 1", "--frames is 1"},
+             {"--turn 1e10", "1000000"},
              {"--epsilon nan", "nan"},
              {"--stereo -1", "-1"},
              {"--time inf", "inf"},
@@ -79,6 +87,7 @@ TEST_CASE("bad arguments are refused") {
         program.require_refused("knot.obj " + arguments, named);
     program.require_refused("", "mesh");
     program.require_refused("nosuch.obj", "nosuch.obj");
+    program.require_refused("gearwork", "--help lists the scenes");
     program.require_refused(".", "folder");
 }
 

@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 
 #include "command_line.hpp"
-#include "image.hpp"
 #include "input_error.hpp"
 
 namespace oit {
@@ -25,11 +24,6 @@ std::vector<std::string_view> read_methods(const std::string& text) {
             names.push_back(info.name);
     if (names.empty()) support::refuse("--methods", text, "names with commas between them");
     return names;
-}
-
-std::filesystem::path read_path(const std::string& text) {
-    if (!text.empty()) support::check_image_path(text);
-    return text;
 }
 
 }  // namespace
@@ -63,9 +57,12 @@ TradeoffOptions parse_tradeoff_options(int count, const char* const* arguments) 
     options.methods = read_methods(methods);
     options.frames =
         static_cast<std::uint32_t>(support::read_number("--frames", frames, 1, 1'000'000));
-    options.json = read_path(json);
-    options.csv = read_path(csv);
-    options.html = read_path(html);
+    options.json = json;
+    options.csv = csv;
+    options.html = html;
+    const Output outputs[] = {
+        {"--json", options.json}, {"--csv", options.csv}, {"--html", options.html}};
+    check_outputs(options, outputs);
     return options;
 }
 
