@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "support/containers.hpp"
+#include "support/moved_bytes.hpp"
 
 namespace bench {
 
@@ -42,11 +43,14 @@ void add_build(Suite& suite) {
     add_cases(suite, "build", suite.workloads(), storages(),
               []<class Record>(const Suite& s, const Workload& workload, const Keeping& keeping) {
                   Containers<Record> containers(s, workload, keeping);
+                  const std::size_t kernel_runs =
+                      containers.insert_seconds(containers.next()).size();
                   const Samples samples = sample(s.sampling(), [&] {
                       cellist::Lists<Record>& lists = containers.next();
                       return host_seconds(s.device(), [&] { containers.build(lists); });
                   });
-                  return Result{samples, double(workload.nodes), 0};
+                  return Result{samples, double(workload.nodes),
+                                build_bytes(workload, keeping, kernel_runs)};
               });
     suite.add("small_build", [&suite] { return small_build(suite); });
 }

@@ -35,7 +35,7 @@ Ceilings::Ceilings(const Suite& suite, const Workload& workload)
         buffers_.push_back({{suite.device(), workload.cells()}, {suite.device(), words}});
         exchange_and_store();
     }
-    if (workload.longest() <= readable_nodes) check(suite.device());
+    if (workload.longest() <= BENCH_READABLE_NODES) check(suite.device());
 }
 
 Ceilings::Buffers& Ceilings::next() {

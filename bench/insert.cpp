@@ -7,26 +7,9 @@
 
 #include "ceiling.hpp"
 #include "support/containers.hpp"
+#include "support/moved_bytes.hpp"
 
 namespace bench {
-
-namespace {
-
-/// Bytes that an insert moves at least, in all passes together: what it stores, and reading and
-/// writing a head or a counter; Storage::counted reads the offset as well. In a single pass, it stores a node.
-double insert_bytes(const Workload& workload, const Keeping& keeping, std::size_t passes) {
-    const double record = 4.0 * workload.words();
-    switch (keeping.options.storage) {
-        case cellist::Storage::linked:
-            return workload.node_bytes + 8.0;
-        case cellist::Storage::counted:
-            return passes == 1 ? workload.node_bytes : 8 + record + 12;
-        default:
-            return record + 8;
-    }
-}
-
-}  // namespace
 
 void add_insert(Suite& suite) {
     const auto measure = []<class Record>(const Suite& s, const Workload& workload,
@@ -43,7 +26,7 @@ void add_insert(Suite& suite) {
         });
         return {samples[0],
                 double(workload.nodes),
-                insert_bytes(workload, keeping, kernel_runs) * workload.nodes,
+                insert_bytes(workload, keeping, kernel_runs),
                 {{"ceiling_ms", 1e3 * samples[1].median},
                  {"of_ceiling", samples[1].median / samples[0].median},
                  {"in_order_ms", 1e3 * samples[2].median},

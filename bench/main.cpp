@@ -2,7 +2,9 @@
 // one kernel, by the host's where it is a call. Results are checked once a case, before it is timed.
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
@@ -11,6 +13,7 @@
 #include <string_view>
 #include <thread>
 
+#include <CL/cl_ext.h>
 #include <benchmark/benchmark.h>
 
 #include "support/suite.hpp"
@@ -95,6 +98,19 @@ cellist::Device profiled(const cellist::Device& device) {
                                                CL_QUEUE_PROFILING_ENABLE)};
 }
 
+/// Where a device is on its bus, as CUDA writes it; empty where it does not say so.
+std::string bus_of(const cellist::Device& device) {
+    const cl::Device opencl = device.queue().getInfo<CL_QUEUE_DEVICE>();
+    cl_device_pci_bus_info_khr at{};
+    if (clGetDeviceInfo(opencl(), CL_DEVICE_PCI_BUS_INFO_KHR, sizeof(at), &at, nullptr) !=
+        CL_SUCCESS)
+        return {};
+    std::array<char, 48> text{};
+    std::snprintf(text.data(), text.size(), "%04x:%02x:%02x.%x", at.pci_domain, at.pci_bus,
+                  at.pci_device, at.pci_function);
+    return text.data();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -119,6 +135,7 @@ int main(int argc, char** argv) try {
     benchmark::AddCustomContext("platform", info.platform);
     benchmark::AddCustomContext("driver", info.driver);
     benchmark::AddCustomContext("kind", gpu ? "gpu" : "cpu");
+    benchmark::AddCustomContext("bus", bus_of(device));
     benchmark::AddCustomContext("compute_units", std::to_string(info.compute_units));
     benchmark::AddCustomContext("nodes", std::to_string(options.nodes));
     benchmark::AddCustomContext("occupancy", std::to_string(options.occupancy));

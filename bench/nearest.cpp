@@ -1,12 +1,13 @@
 // The 8 nearest records of every cell, in device time.
 
 #include "support/containers.hpp"
+#include "support/moved_bytes.hpp"
 
 namespace bench {
 
 void add_nearest(Suite& suite) {
     add_cases(
-        suite, "nearest", random_and_coherent(suite.workloads(readable_nodes)), storages(),
+        suite, "nearest", random_and_coherent(suite.workloads(BENCH_READABLE_NODES)), storages(),
         []<class Record>(const Suite& s, const Workload& workload, const Keeping& keeping) {
             constexpr cl_uint k = 8;
             Containers<Record> containers(s, workload, keeping);
@@ -19,7 +20,7 @@ void add_nearest(Suite& suite) {
             const Samples samples = sample(s.sampling(), [&] {
                 return device_seconds(nearest.run(workload.cells(), containers.next(), digests));
             });
-            return Result{samples, double(workload.nodes), 0};
+            return Result{samples, double(workload.nodes), read_bytes(workload, keeping)};
         });
 }
 

@@ -1,11 +1,12 @@
 // Packing: a contiguous copy of all lists, in host time. Its buffers are allocated in each run.
 
 #include "support/containers.hpp"
+#include "support/moved_bytes.hpp"
 
 namespace bench {
 
 void add_pack(Suite& suite) {
-    add_cases(suite, "pack", random_and_coherent(suite.workloads(readable_nodes)), storages(),
+    add_cases(suite, "pack", random_and_coherent(suite.workloads(BENCH_READABLE_NODES)), storages(),
               []<class Record>(const Suite& s, const Workload& workload, const Keeping& keeping) {
                   Containers<Record> containers(s, workload, keeping);
                   cellist::Kernel read(s.device(), source_of<Record>(kernels::read_cl, "read.cl"),
@@ -20,7 +21,7 @@ void add_pack(Suite& suite) {
                       const cellist::Lists<Record>& lists = containers.next();
                       return host_seconds(s.device(), [&] { (void)lists.pack(); });
                   });
-                  return Result{samples, double(workload.nodes), 0};
+                  return Result{samples, double(workload.nodes), pack_bytes(workload, keeping)};
               });
 }
 

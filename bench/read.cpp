@@ -1,18 +1,11 @@
 // Walking every list once, in device time.
 
 #include "support/containers.hpp"
+#include "support/moved_bytes.hpp"
 
 namespace bench {
 
 namespace {
-
-/// Bytes that reading moves at least: the records, with their links where there are some, the heads or
-/// offsets, and a digest for each cell.
-double read_bytes(const Workload& workload, const Keeping& keeping) {
-    const bool linked = keeping.options.storage == cellist::Storage::linked;
-    return double(workload.nodes) * (linked ? workload.node_bytes : 4 * workload.words()) +
-           8.0 * workload.cells();
-}
 
 template <class Record>
 Result read(const Suite& suite, const Workload& workload, const Keeping& keeping) {
@@ -29,7 +22,7 @@ Result read(const Suite& suite, const Workload& workload, const Keeping& keeping
 }  // namespace
 
 void add_read(Suite& suite) {
-    add_cases(suite, "read", suite.workloads(readable_nodes), storages(),
+    add_cases(suite, "read", suite.workloads(BENCH_READABLE_NODES), storages(),
               []<class Record>(const Suite& s, const Workload& workload, const Keeping& keeping) {
                   return read<Record>(s, workload, keeping);
               });

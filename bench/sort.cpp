@@ -2,6 +2,7 @@
 // is sorted already.
 
 #include "support/containers.hpp"
+#include "support/moved_bytes.hpp"
 
 namespace bench {
 
@@ -48,7 +49,7 @@ void add_sort(Suite& suite) {
                       containers.build(lists);
                       return host_seconds(s.device(), [&] { lists.sort(&Record::key); });
                   });
-                  return Result{samples, double(workload.nodes), 0};
+                  return Result{samples, double(workload.nodes), sort_bytes(workload)};
               });
 }
 

@@ -124,8 +124,7 @@ std::vector<Workload> storage_grid(const Suite& suite) {
             Workload workload = suite.base(distribution);
             workload.occupancy = occupancy;
             workload.nodes /= 4;
-            while (workload.longest() > readable_nodes) workload.nodes /= 2;
-            grid.push_back(workload);
+            grid.push_back(readable(workload));
         }
     }
     return grid;
@@ -134,12 +133,11 @@ std::vector<Workload> storage_grid(const Suite& suite) {
 }  // namespace
 
 void add_storage(Suite& suite) {
-    const std::vector<Workload> bases{suite.base(random), suite.base(coherent), suite.base(runs)};
-    add_cases(suite, "build_read/input:generated", bases, storages(),
+    add_cases(suite, "build_read/input:generated", suite.readable_bases(), storages(),
               []<class Record>(const Suite& s, const Workload& workload, const Keeping& keeping) {
                   return build_read<Record>(s, workload, keeping, Input::generated);
               });
-    add_cases(suite, "build_read/input:stored", bases, storages(),
+    add_cases(suite, "build_read/input:stored", suite.readable_bases(), storages(),
               []<class Record>(const Suite& s, const Workload& workload, const Keeping& keeping) {
                   return build_read<Record>(s, workload, keeping, Input::stored);
               });

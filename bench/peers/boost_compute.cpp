@@ -116,8 +116,10 @@ private:
 }  // namespace
 
 void add_peer_boost_compute(Suite& suite) {
-    for (const Distribution& distribution : {random, coherent, runs}) {
-        const Workload workload = suite.base(distribution);
+    for (const Workload& workload : suite.readable_bases()) {
+        // Two arrays of cells and two of values, and what the sort takes beside them.
+        const double values_bytes = double(workload.nodes) * sizeof(cl_uint4);
+        if (!fits(suite.device().info(), values_bytes, 5 * values_bytes)) continue;
         suite.add("sort_path/peer:boost_compute/" + workload.name(), [&suite, workload] {
             return BoostCompute(suite, workload).with_values(suite.sampling());
         });

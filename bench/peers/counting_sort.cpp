@@ -325,13 +325,12 @@ std::function<double(std::vector<cl_uint>&)> generating(const Workload& workload
 
 template <template <class> class Sort>
 void add(Suite& suite, const std::string& name) {
-    add_sort_path(
-        suite, name + "/input:generated", peer_workloads(suite),
-        [&suite](const Workload& workload) { return generating<Sort>(workload, suite.threads()); });
-    add_sort_path(suite, name + "/input:stored", peer_workloads(suite),
-                  [&suite](const Workload& workload) {
-                      return sorter<Sort>(workload, suite.threads(), Stored(workload));
-                  });
+    add_sort_path(suite, name + "/input:generated", [&suite](const Workload& workload) {
+        return generating<Sort>(workload, suite.threads());
+    });
+    add_sort_path(suite, name + "/input:stored", [&suite](const Workload& workload) {
+        return sorter<Sort>(workload, suite.threads(), Stored(workload));
+    });
 }
 
 }  // namespace

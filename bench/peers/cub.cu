@@ -12,7 +12,8 @@
 //     cub_gather     with indices as values, then the rests gathered by them
 //
 // Host time from the first launch until the device is done; the input lies in memory, temporary memory
-// is allocated before. Results are checked once a case, before it is timed.
+// is allocated before. Results are checked once a case, before it is timed. Cases that the device has no room
+// for are left out, and named on standard error.
 
 #include <algorithm>
 #include <chrono>
@@ -67,6 +68,13 @@ struct Workload {
         std::uint32_t cells = 1;
         while (cells <= nodes / occupancy / 2) cells *= 2;
         return cells;
+    }
+    /// The same, halved until one thread can go through each list.
+    Workload readable() const {
+        Workload readable = *this;
+        while (bench_longest(readable.nodes, readable.cells(), id) > BENCH_READABLE_NODES)
+            readable.nodes /= 2;
+        return readable;
     }
     int cell_bits() const {
         int bits = 0;
@@ -171,8 +179,9 @@ class Report {
 public:
     Report() {
         cudaDeviceProp device;
-        int driver = 0;
-        CHECK(cudaGetDeviceProperties(&device, 0));
+        int driver = 0, current = 0;
+        CHECK(cudaGetDevice(&current));
+        CHECK(cudaGetDeviceProperties(&device, current));
         CHECK(cudaDriverGetVersion(&driver));
         std::printf(
             "{\n  \"context\": {\"device\": \"%s\", \"cuda_driver\": \"%d.%d\", \"cub\": "
@@ -393,6 +402,15 @@ void segmented_sort(Report& report, const Sampling& sampling, const Workload& w)
                   });
 }
 
+/// Whether there is room for keys and values of 16 bytes, in and out, and what CUB takes beside them.
+bool fits(const Workload& w) {
+    std::size_t free = 0, total = 0;
+    CHECK(cudaMemGetInfo(&free, &total));
+    const bool room = std::size_t{w.nodes} * 64 < free;
+    if (!room) std::fprintf(stderr, "left out, for want of memory: %s\n", w.name().c_str());
+    return room;
+}
+
 std::uint32_t number(const std::string& text) {
     return static_cast<std::uint32_t>(std::strtoul(text.c_str(), nullptr, 10));
 }
@@ -410,25 +428,35 @@ int main(int argc, char** argv) {
             nodes = number(value);
         else if (argument.rfind("--occupancy=", 0) == 0 && number(value) > 0)
             occupancy = number(value);
-        else if (argument == "--effort=tiny")
+        else if (argument.rfind("--bus=", 0) == 0) {
+            int device = 0;
+            CHECK(cudaDeviceGetByPCIBusId(&device, value.c_str()));
+            CHECK(cudaSetDevice(device));
+        } else if (argument == "--effort=tiny")
             sampling = {1, 1, 0};
         else if (argument != "--effort=quick" && argument != "--effort=full") {
             std::fprintf(stderr,
                          "usage: cellist_bench_cub [--nodes=N] [--occupancy=K] "
-                         "[--effort=tiny|quick|full]\n");
+                         "[--effort=tiny|quick|full] [--bus=DOMAIN:BUS:DEVICE.FUNCTION]\n");
             return 2;
         }
     }
 
     Report report;
-    for (const Workload& w : {Workload{"random", BENCH_RANDOM, occupancy, nodes},
-                              Workload{"coherent", BENCH_COHERENT, occupancy, nodes},
-                              Workload{"runs", BENCH_RUNS, occupancy, nodes}}) {
+    for (const Workload& base : {Workload{"random", BENCH_RANDOM, occupancy, nodes},
+                                 Workload{"coherent", BENCH_COHERENT, occupancy, nodes},
+                                 Workload{"runs", BENCH_RUNS, occupancy, nodes},
+                                 Workload{"skewed", BENCH_SKEWED, occupancy, nodes},
+                                 Workload{"hot", BENCH_HOT, occupancy, nodes}}) {
+        const Workload w = base.readable();
+        if (!fits(w)) continue;
         sort_values<Record>(report, sampling, w, "cub_values");
         sort_values<uint4>(report, sampling, w, "cub_values_16");
         sort_indices(report, sampling, w);
     }
-    for (const std::uint32_t length : {8u, 16u, 32u, 64u})
-        segmented_sort(report, sampling, {"coherent", BENCH_COHERENT, length, nodes});
+    for (const std::uint32_t length : {8u, 16u, 32u, 64u}) {
+        const Workload w{"coherent", BENCH_COHERENT, length, nodes};
+        if (fits(w)) segmented_sort(report, sampling, w);
+    }
     return 0;
 }

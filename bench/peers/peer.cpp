@@ -14,9 +14,4 @@ Array<Item> items_of(const Workload& workload) {
                 });
     return items;
 }
-
-std::vector<Workload> peer_workloads(const Suite& suite) {
-    return {suite.base(random), suite.base(coherent), suite.base(runs)};
-}
-
 }  // namespace bench::peers

@@ -114,16 +114,15 @@ inline double seconds_since(std::chrono::steady_clock::time_point begin) {
 /// The items of a workload, in the order of insertion.
 Array<Item> items_of(const Workload& workload);
 
-/// The workloads that peers are compared on.
-std::vector<Workload> peer_workloads(const Suite& suite);
-
-/// Adds a case "sort_path/peer:<name>/..." for each of the workloads. `prepare(workload)` returns a
-/// function that makes the lists, reads them into the digests it is given, and returns the seconds
+/// Adds a case "sort_path/peer:<name>/..." for each workload that peers are compared on. `prepare(workload)` returns
+/// a function that makes the lists, reads them into the digests it is given, and returns the seconds
 /// that took.
 template <class Prepare>
-void add_sort_path(Suite& suite, const std::string& name, const std::vector<Workload>& workloads,
-                   const Prepare& prepare) {
-    for (const Workload& workload : workloads) {
+void add_sort_path(Suite& suite, const std::string& name, const Prepare& prepare) {
+    for (const Workload& workload : suite.readable_bases()) {
+        // Input, items and lists.
+        const double items_bytes = double(workload.nodes) * sizeof(Item);
+        if (!fits(suite.device().info(), items_bytes, 4 * items_bytes)) continue;
         suite.add("sort_path/peer:" + name + "/" + workload.name(), [=, &suite]() -> Result {
             auto run = prepare(workload);
             std::vector<cl_uint> digests(workload.cells());

@@ -44,7 +44,7 @@ Result sort_lists(const Suite& suite, const Workload& workload) {
 }  // namespace
 
 void add_peer_std_sort(Suite& suite) {
-    add_sort_path(suite, "std_sort", peer_workloads(suite), [&suite](const Workload& workload) {
+    add_sort_path(suite, "std_sort", [&suite](const Workload& workload) {
         auto input = items_of(workload);
         auto items = uninitialized<Item>(workload.nodes);
         return [&suite, workload, input = std::move(input), items = std::move(items),

@@ -6,6 +6,7 @@
   note         what a reader has to know of the run, where there is something
   nodes, occupancy    of the workload that ratios are taken of
   figures      one for each case: {name, <labels of the case>, time_ms, least_ms, greatest_ms, samples, ...}
+  failed       cases that have no figures because they failed, where there are some: {name, message}
   ratios       see ratios.py
 """
 
@@ -22,8 +23,6 @@ def _rounded(value):
 
 def _figure(benchmark):
     """A benchmark in Google's form, whose name is name/label:value/..., as a figure."""
-    if benchmark.get("error_occurred"):
-        raise ValueError(f"{benchmark['name']}: {benchmark['error_message']}")
     name, *labels = benchmark["name"].split("/")
     figure = {"name": name}
     for label in labels:
@@ -52,7 +51,11 @@ def merge(documents, effort, git, note=""):
     results.update({"git": git, "effort": effort})
     if note:
         results["note"] = note
-    results["figures"] = [_figure(b) for document in documents for b in document["benchmarks"]]
+    benchmarks = [b for document in documents for b in document["benchmarks"]]
+    results["figures"] = [_figure(b) for b in benchmarks if not b.get("error_occurred")]
+    failed = [{"name": b["name"], "message": b["error_message"]} for b in benchmarks if b.get("error_occurred")]
+    if failed:
+        results["failed"] = failed
     copies = {_workload(f): f["bytes_per_s"]
               for f in select(results["figures"], "ceiling", operation="copy", distribution="random")}
     for figure in results["figures"]:
@@ -75,6 +78,12 @@ def select(figures, name, **labels):
 def fastest(figures):
     """The figure with the least time, or None."""
     return min(figures, key=lambda figure: figure["time_ms"], default=None)
+
+
+def power_of_two(value):
+    """A number as people read it: 2^22, or 1,000."""
+    bits = value.bit_length() - 1
+    return f"2^{bits}" if value == 1 << bits else f"{value:,}"
 
 
 def load(path):

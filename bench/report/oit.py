@@ -19,7 +19,7 @@ FRAMES_PER_SECOND = {
     "teapot": {"gpu": 20000, "cpu": 60},
     "dragon": {"gpu": 10000, "cpu": 25},
     "dragon, 4 samples": {"gpu": 5000, "cpu": 8},
-    "gearworks": {"gpu": 2500, "cpu": 3},
+    "gearworks, 64 layers": {"gpu": 2500, "cpu": 3},
 }
 # How many times as long plain C++ takes.
 TIMES_PLAIN_CPP = {"teapot": {"cpu": 2.5}, "dragon": {"cpu": 2.5}}

@@ -3,11 +3,10 @@
 import math
 from xml.sax.saxutils import escape
 
-from figures import select
-from ratios import storage_times
-from tables import device_title, power_of_two
+from figures import power_of_two, select
+from ratios import DISTRIBUTIONS, storage_times
+from tables import device_title
 
-DISTRIBUTIONS = ("random", "coherent", "runs", "skewed", "hot")
 STORAGES = ("linked", "counted", "fixed")
 READS = (0, 1, 2, 4, 8, 16)
 # Okabe and Ito's colours, which most people can tell apart.
@@ -31,7 +30,8 @@ def _document(width, height, parts):
 
 
 class _Panel:
-    """Lines over a number, such as that of nodes. `lines` is a list of (title, [(number, value)], dashed)."""
+    """Lines over a number, such as that of nodes. `lines` is a list of (title, points, dashed); a point is
+    (number, value), or (number, value, least, greatest) where the spread is shown."""
 
     WIDTH, HEIGHT = 380, 260
     LEFT, TOP = 60, 60
@@ -44,8 +44,9 @@ class _Panel:
         self.parts = [_text(self.x, self.TOP - 14, f"{title}, {unit}", size=13)]
         if not points:
             return
-        self.bits = range(min(int(math.log2(n)) for n, _ in points), max(int(math.log2(n)) for n, _ in points) + 1)
-        values = [value for _, value in points]
+        bits = [int(math.log2(point[0])) for point in points]
+        self.bits = range(min(bits), max(bits) + 1)
+        values = [value for point in points for value in point[1:]]
         if logarithmic:
             steps = [mantissa * 10.0 ** exponent for exponent in range(-6, 9) for mantissa in (1, 2, 5)]
             first = max(step for step in steps if step <= min(values))
@@ -75,27 +76,32 @@ class _Panel:
     def y(self, position):
         return self.TOP + self.HEIGHT * (1 - (position - self.low) / (self.high - self.low))
 
+    def y_of(self, value):
+        return self.y(math.log10(value) if self.logarithmic else value)
+
     def draw(self, index, label, line, dashed):
         colour = COLOURS[index % len(COLOURS)]
         dash = 'stroke-dasharray="5 4"' if dashed else ""
-        points = [(self.x_of(n), self.y(math.log10(v) if self.logarithmic else v)) for n, v in line]
-        path = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
+        points = [(self.x_of(point[0]), *(self.y_of(value) for value in point[1:])) for point in line]
+        path = " ".join(f"{x:.1f},{y:.1f}" for x, y, *_ in points)
+        self.parts += [_line(x, spread[0], x, spread[1], colour) for x, _, *spread in points if spread]
         self.parts.append(f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="2" {dash}/>')
-        self.parts += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="{colour}"/>' for x, y in points]
+        self.parts += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="{colour}"/>' for x, y, *_ in points]
         # The legend, in two columns under the panel.
         x = self.x + index % 2 * self.WIDTH / 2
         y = self.TOP + self.HEIGHT + 58 + index // 2 * 18
         self.parts += [_line(x, y - 4, x + 24, y - 4, colour, f'stroke-width="2" {dash}'), _text(x + 30, y, label)]
 
 
-def _sweep(results, name, value, **labels):
-    """(nodes, value) of the base workload at every size."""
+def _sweep(results, name, values, **labels):
+    """A point of the base workload at every size."""
     found = select(results["figures"], name, node_bytes=16, occupancy=results["occupancy"], **labels)
-    return [(figure["nodes"], value(figure)) for figure in found]
+    return [(figure["nodes"], *values(figure)) for figure in found]
 
 
 def _millions(figure):
-    return figure["nodes_per_s"] / 1e6
+    rate = figure["nodes_per_s"] / 1e6
+    return rate, rate * figure["time_ms"] / figure["greatest_ms"], rate * figure["time_ms"] / figure["least_ms"]
 
 
 def throughput(results):
@@ -107,19 +113,20 @@ def throughput(results):
              for s in STORAGES for d in ("random", "coherent")]
     left = _Panel(0, "insert, linked", "million nodes/s", insert, True)
     right = _Panel(470, "whole builds, host time", "million nodes/s", build, True)
-    return _document(940, 440, [_text(60, 24, f"Throughput against size: {device_title(results)}", size=15),
+    title = f"Throughput against size: {device_title(results)}; medians, least and greatest"
+    return _document(940, 440, [_text(60, 24, title, size=15),
                                 *left.parts, *right.parts])
 
 
 def of_ceiling(results):
     def ratio(figure):
-        return figure["of_ceiling"]
+        return (figure["of_ceiling"],)
     linked = [(d, _sweep(results, "insert", ratio, storage="linked", allocation=None, distribution=d), False)
               for d in DISTRIBUTIONS]
     random = [(s, _sweep(results, "insert", ratio, storage=s, allocation=None, distribution="random"), False)
               for s in STORAGES]
-    left = _Panel(0, "linked", "ceiling's time / insert's time", linked, False)
-    right = _Panel(470, "random cells", "ceiling's time / insert's time", random, False)
+    left = _Panel(0, "linked", "ceiling's time / insert's time", linked, True)
+    right = _Panel(470, "random cells", "ceiling's time / insert's time", random, True)
     return _document(940, 440, [
         _text(60, 24, f"Insert against exchange and store without allocation: {device_title(results)}", size=15),
         *left.parts, *right.parts])

@@ -5,9 +5,10 @@ A ratio is {name, case, value, goal, better, ours, theirs}: `better` is "higher"
 for this kind of device.
 """
 
-from figures import fastest, select
+from figures import fastest, power_of_two, select
 
 LENGTHS = (8, 16, 32, 64)
+DISTRIBUTIONS = ("random", "coherent", "runs", "skewed", "hot")
 
 # name -> (case or None for all, {kind of device: goal}), from the most special case on.
 GOALS = {
@@ -60,16 +61,19 @@ def _goal(name, case, kind):
     return None
 
 
-def _described(figure, time_ms=None):
+def _described(figure):
+    """What was measured, with its median, least and greatest time."""
     what = [str(figure[key]) for key in ("peer", "storage", "allocation", "input") if key in figure]
-    return f"{' '.join(what) or figure['name']} {figure['time_ms'] if time_ms is None else time_ms:.4g} ms"
+    return (f"{' '.join(what) or figure['name']} {figure['time_ms']:.4g} ms "
+            f"({figure['least_ms']:.3g} to {figure['greatest_ms']:.3g})")
 
 
 class _Run:
     def __init__(self, results):
         self.figures = results["figures"]
         self.kind = results["kind"]
-        self.base = {"node_bytes": 16, "occupancy": results["occupancy"], "nodes": results["nodes"]}
+        self.nodes = results["nodes"]
+        self.base = {"node_bytes": 16, "occupancy": results["occupancy"], "nodes": self.nodes}
         self.ratios = []
 
     def at_base(self, name, **labels):
@@ -115,15 +119,18 @@ class _Run:
 
     def build_read(self, name, peers):
         """Against the best of the peers: with what a kernel computes, where the peers' input lies in
-        memory already or is computed, whichever is faster; and with all input in memory."""
-        for distribution in ("random", "coherent", "runs"):
-            theirs = [f for f in self.at_base("sort_path", distribution=distribution) if peers(f)]
-            ours = self.at_base("build_read", distribution=distribution, input="generated")
-            self.compare(name, distribution, fastest(ours), fastest(theirs))
-            ours = self.at_base("build_read", distribution=distribution, input="stored")
+        memory already or is computed, whichever is faster; and with all input in memory. Distributions with
+        long lists have fewer records, so that each can be read by one work-item."""
+        for distribution in DISTRIBUTIONS:
+            found = select(self.figures, "build_read", distribution=distribution)
+            nodes = found[0]["nodes"] if found else self.nodes
+            case = distribution if nodes == self.nodes else f"{distribution}, {power_of_two(nodes)} nodes"
+            theirs = [f for f in self.at_base("sort_path", distribution=distribution, nodes=nodes) if peers(f)]
+            ours = self.at_base("build_read", distribution=distribution, input="generated", nodes=nodes)
+            self.compare(name, case, fastest(ours), fastest(theirs))
+            ours = self.at_base("build_read", distribution=distribution, input="stored", nodes=nodes)
             theirs = [f for f in theirs if f.get("input") != "generated"]
-            self.compare(name, f"{distribution}, input in memory", fastest(ours), fastest(theirs),
-                         has_goal=False)
+            self.compare(name, f"{case}, input in memory", fastest(ours), fastest(theirs), has_goal=False)
 
     def automatic(self):
         """The storage that the library chose against the best one, in the worst case of the grid: 25

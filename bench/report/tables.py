@@ -2,7 +2,7 @@
 
 import re
 
-from figures import fastest, select
+from figures import fastest, power_of_two, select
 from ratios import GOALS, LENGTHS, met
 
 
@@ -14,11 +14,6 @@ def device_title(results):
     version = re.match(r"[0-9.]*[0-9]", results["driver"])
     driver = f"PoCL {version.group()}" if version and "Portable" in results["platform"] else results["driver"]
     return f"{driver}, {results['threads']} cores ({processor})"
-
-
-def power_of_two(value):
-    bits = value.bit_length() - 1
-    return f"2^{bits}" if value == 1 << bits else f"{value:,}"
 
 
 def _value(value):
@@ -36,7 +31,7 @@ _MARKS = {True: "met", False: "MISSED", None: ""}
 
 
 def ratios_as_text(results):
-    """The table of ratios; what misses its goal is marked."""
+    """The table of ratios; what misses its goal is marked. Times are medians, with the least and the greatest."""
     rows = [("ratio", "case", "value", "goal", "", "ours", "theirs")]
     for ratio in results["ratios"]:
         rows.append((ratio["name"], ratio["case"], _value(ratio["value"]), _goal(ratio), _MARKS[met(ratio)],
@@ -48,7 +43,9 @@ def ratios_as_text(results):
     goals = [ratio for ratio in results["ratios"] if ratio["goal"] is not None]
     missed = sum(met(ratio) is False for ratio in goals)
     unknown = sum(ratio["value"] is None for ratio in goals)
-    return "\n".join([head, "", *lines, "", f"{len(goals)} goals: {missed} missed, {unknown} not measured"])
+    failures = [f"failed: {case['name']}: {case['message']}" for case in results.get("failed", [])]
+    return "\n".join([head, "", *lines, "", f"{len(goals)} goals: {missed} missed, {unknown} not measured",
+                      *failures])
 
 
 def ratios_as_markdown(all_results):
@@ -81,10 +78,10 @@ def ratios_as_markdown(all_results):
 
 def conditions_as_markdown(all_results):
     """What was measured on what."""
-    lines = ["| device | driver | nodes, cells | peers | commit | note |", "|---|---|---|---|---|---|"]
+    lines = ["| device | driver | effort | nodes, cells | peers | commit | note |", "|---|---|---|---|---|---|---|"]
     for results in all_results:
         peers = sorted({f["peer"] for f in results["figures"] if f["name"] == "sort_path"})
-        lines.append(f"| {device_title(results)} | {results['driver']} | {power_of_two(results['nodes'])}, "
+        lines.append(f"| {device_title(results)} | {results['driver']} | `{results['effort']}` | {power_of_two(results['nodes'])}, "
                      f"{power_of_two(results['nodes'] // results['occupancy'])} | {', '.join(peers)} | "
                      f"{results['git']} | {results.get('note', '')} |")
     return "\n".join(lines)

@@ -52,8 +52,7 @@ public:
         if (report.stored != workload.nodes)
             throw std::runtime_error(std::to_string(report.stored) + " records are stored, not " +
                                      std::to_string(workload.nodes));
-        Workload checked = workload;
-        while (checked.longest() > readable_nodes) checked.nodes /= 2;
+        const Workload checked = readable(workload);
         if (checked.nodes == workload.nodes)
             check(device);
         else

@@ -10,6 +10,7 @@ typedef uint bench_uint;
 #define BENCH_FUNCTION static inline
 #define BENCH_LEADING_ZEROS(x) clz(x)
 #else
+#include <math.h>
 #include <stdint.h>
 typedef uint32_t bench_uint;
 #if defined(__CUDA_ARCH__)
@@ -75,5 +76,31 @@ BENCH_FUNCTION bench_uint bench_word(bench_uint i, bench_uint j) {
 BENCH_FUNCTION bench_uint bench_digest_word(bench_uint word, bench_uint j) {
     return word * (2u * j + 1u);
 }
+
+#ifndef __OPENCL_VERSION__
+
+// About how long the longest list is; an upper bound in all but rare cases.
+inline double bench_longest(bench_uint nodes, bench_uint cells, bench_uint distribution) {
+    const double mean = static_cast<double>(nodes) / cells;
+    // Five standard deviations over the mean of a Poisson distribution, and a bit for small means.
+    const auto tail = [](double expected) { return expected + 5 * sqrt(expected) + 5; };
+    switch (distribution) {
+        case BENCH_COHERENT:
+            return ceil(mean);
+        case BENCH_RUNS:
+            return 16 * tail(mean / 16);
+        case BENCH_SKEWED:
+            return cells < 4 ? nodes : nodes / log2(static_cast<double>(cells));
+        case BENCH_HOT:
+            return nodes;
+        default:
+            return tail(mean);
+    }
+}
+
+// Longest list that one work-item, or thread, goes through in a benchmark.
+#define BENCH_READABLE_NODES 32768.0
+
+#endif
 
 #endif

@@ -26,6 +26,13 @@ Workload Suite::base(const Distribution& distribution) const {
     return {.distribution = distribution, .occupancy = occupancy_, .nodes = nodes_};
 }
 
+std::vector<Workload> Suite::readable_bases() const {
+    std::vector<Workload> all;
+    for (const Distribution& distribution : distributions)
+        all.push_back(readable(base(distribution)));
+    return all;
+}
+
 std::vector<Workload> Suite::workloads() const {
     std::vector<Workload> all;
     for (const Distribution& distribution : distributions) {

@@ -46,6 +46,9 @@ public:
 
     /// The workload that the ratios are taken of.
     [[nodiscard]] Workload base(const Distribution& distribution) const;
+    /// The base of each distribution, halved until one work-item can go through each list: what peers are
+    /// compared on.
+    [[nodiscard]] std::vector<Workload> readable_bases() const;
     /// The base with each distribution; under full effort also with each size from 2^12 to 2^26, and,
     /// of random and coherent cells, with each size of a node and several occupancies.
     [[nodiscard]] std::vector<Workload> workloads() const;

@@ -2,34 +2,22 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 
 namespace bench {
 
 cl_uint Workload::cells() const { return std::bit_floor(std::max(nodes / occupancy, 1u)); }
 
-double Workload::longest() const {
-    const double mean = static_cast<double>(nodes) / cells();
-    // Five standard deviations over the mean of a Poisson distribution, and a bit for small means.
-    const auto tail = [](double expected) { return expected + 5 * std::sqrt(expected) + 5; };
-    switch (distribution.id) {
-        case BENCH_COHERENT:
-            return std::ceil(mean);
-        case BENCH_RUNS:
-            return 16 * tail(mean / 16);
-        case BENCH_SKEWED:
-            return cells() < 4 ? nodes : nodes / std::log2(cells());
-        case BENCH_HOT:
-            return nodes;
-        default:
-            return tail(mean);
-    }
-}
+double Workload::longest() const { return bench_longest(nodes, cells(), distribution.id); }
 
 std::string Workload::name() const {
     return std::string("distribution:") + distribution.name +
            "/node_bytes:" + std::to_string(node_bytes) + "/occupancy:" + std::to_string(occupancy) +
            "/nodes:" + std::to_string(nodes);
+}
+
+Workload readable(Workload workload) {
+    while (workload.longest() > BENCH_READABLE_NODES) workload.nodes /= 2;
+    return workload;
 }
 
 std::vector<Workload> random_and_coherent(std::vector<Workload> workloads) {
@@ -90,8 +78,11 @@ bool fits(const cellist::DeviceInfo& device, const Workload& workload, const Kee
     if (keeping.options.storage == cellist::Storage::fixed)
         pool_bytes = record_bytes * cells * workload.longest();
     // Beside the pool: heads, what the ceiling or a packed copy takes, and room to breathe.
-    const double all_bytes = 3 * pool_bytes + 16 * cells;
-    return pool_bytes <= static_cast<double>(device.max_allocation_bytes) &&
+    return fits(device, pool_bytes, 3 * pool_bytes + 16 * cells);
+}
+
+bool fits(const cellist::DeviceInfo& device, double largest_bytes, double all_bytes) {
+    return largest_bytes <= static_cast<double>(device.max_allocation_bytes) &&
            all_bytes <= 0.5 * static_cast<double>(device.global_memory_bytes);
 }
 

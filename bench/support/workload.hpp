@@ -26,9 +26,6 @@ inline constexpr Distribution runs = distributions[2];
 inline constexpr Distribution skewed = distributions[3];
 inline constexpr Distribution hot = distributions[4];
 
-/// Longest list that one work-item goes through in a benchmark.
-inline constexpr double readable_nodes = 1 << 15;
-
 /// What is inserted where: `nodes` records into nodes / occupancy cells, which is a power of two.
 struct Workload {
     Distribution distribution = random;
@@ -43,6 +40,9 @@ struct Workload {
     /// As benchmarks are named: "distribution:random/node_bytes:16/...".
     [[nodiscard]] std::string name() const;
 };
+
+/// The same, halved until one work-item can go through each list.
+[[nodiscard]] Workload readable(Workload workload);
 
 /// Those whose cells are random or coherent: the extremes of what memory makes of a workload.
 [[nodiscard]] std::vector<Workload> random_and_coherent(std::vector<Workload> workloads);
@@ -67,8 +67,11 @@ struct Keeping {
 /// Linked lists with each way to get nodes, by its name.
 [[nodiscard]] const std::vector<Keeping>& allocations();
 
-/// Whether a device of this size has room for `copies` containers of a workload at once.
+/// Whether a device of this size has room for a container of a workload, and what is measured with it.
 [[nodiscard]] bool fits(const cellist::DeviceInfo& device, const Workload& workload,
                         const Keeping& keeping);
+
+/// The same of arrays, the largest of which takes so many bytes, and all together so many.
+[[nodiscard]] bool fits(const cellist::DeviceInfo& device, double largest_bytes, double all_bytes);
 
 }  // namespace bench

@@ -28,7 +28,7 @@ double check_picture(PlainCpp& plain, const oit::Frame& frame) {
 
 void measure_plain_cpp(Run& run) {
     const std::array cases{mesh_case("teapot.obj"), mesh_case("dragon.ply"),
-                           scene_case("gearworks")};
+                           gearworks_of_most_layers()};
     run.measure("plain_cpp", cases, [&](const Stage& stage) -> std::vector<Run::Figure> {
         PlainCpp plain(stage.frame);
         const double psnr_db = check_picture(plain, stage.frame);

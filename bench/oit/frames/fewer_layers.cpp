@@ -38,7 +38,7 @@ struct Drawing {
 }  // namespace
 
 void measure_fewer_layers(Run& run) {
-    const std::array cases{scene_case("gearworks")};
+    const std::array cases{gearworks_of_most_layers()};
     run.measure("fewer_layers", cases, [&](const Stage& stage) {
         std::vector<std::unique_ptr<Drawing>> drawn;
         std::vector<std::function<double()>> drawings;

@@ -35,7 +35,7 @@ void measure_frame_times(Run& run) {
     const std::array cases{
         mesh_case("teapot.obj"), dragon,
         with(dragon, "4 samples", [](auto& options) { options.quality.samples = 4; }),
-        scene_case("gearworks")};
+        gearworks_of_most_layers()};
     run.measure("frame_times", cases, [&](const Stage& stage) -> std::vector<Run::Figure> {
         oit::Renderer renderer(run.device(), stage.frame);
         renderer.warm_up();

@@ -42,6 +42,13 @@ Case scene_case(const std::string& name) {
     return result;
 }
 
+Case gearworks_of_most_layers() {
+    return with(scene_case("gearworks"), "64 layers", [](oit::FrameOptions& options) {
+        options.orbit = {.azimuth_degrees = 50, .elevation_degrees = -45};
+        options.time = 0.9;
+    });
+}
+
 Case with(Case original, const std::string& what,
           const std::function<void(oit::FrameOptions& options)>& change) {
     original.name += ", " + what;

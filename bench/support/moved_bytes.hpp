@@ -1,0 +1,27 @@
+#pragma once
+
+// Bytes that operations move at least: what they have to read and write, each once. Rates are taken of these, and
+// compared with that of a copy.
+
+#include <cstddef>
+
+#include "support/workload.hpp"
+
+namespace bench {
+
+/// All runs of an inserting kernel: the records that it stores, and reading and writing a head or a counter for each;
+/// Storage::counted reads the offset as well. In a single pass, it stores a node.
+[[nodiscard]] double insert_bytes(const Workload& workload, const Keeping& keeping,
+                                  std::size_t kernel_runs);
+/// Emptying the lists, inserting, and moving the records where there is a single pass into Storage::counted.
+[[nodiscard]] double build_bytes(const Workload& workload, const Keeping& keeping,
+                                 std::size_t kernel_runs);
+/// Walking every list: the records, with their links where there are some, the heads or offsets, and a
+/// result for each cell.
+[[nodiscard]] double read_bytes(const Workload& workload, const Keeping& keeping);
+/// Every record is read and written.
+[[nodiscard]] double sort_bytes(const Workload& workload);
+/// The lists are walked, and their records and offsets written.
+[[nodiscard]] double pack_bytes(const Workload& workload, const Keeping& keeping);
+
+}  // namespace bench
