@@ -43,8 +43,7 @@ void add_build(Suite& suite) {
     add_cases(suite, "build", suite.workloads(), storages(),
               []<class Record>(const Suite& s, const Workload& workload, const Keeping& keeping) {
                   Containers<Record> containers(s, workload, keeping);
-                  const std::size_t kernel_runs =
-                      containers.insert_seconds(containers.next()).size();
+                  const std::size_t kernel_runs = containers.build(containers.next()).passes;
                   const Samples samples = sample(s.sampling(), [&] {
                       cellist::Lists<Record>& lists = containers.next();
                       return host_seconds(s.device(), [&] { containers.build(lists); });

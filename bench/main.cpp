@@ -13,8 +13,9 @@
 #include <string_view>
 #include <thread>
 
-#include <CL/cl_ext.h>
 #include <benchmark/benchmark.h>
+
+#include <cellist/opencl.hpp>
 
 #include "support/suite.hpp"
 

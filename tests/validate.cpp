@@ -10,7 +10,7 @@ constexpr auto source = R"(
 
 static uint last_of(CELLIST_LISTS(Item, lists), uint cell)
 {
-    uint last = cellist_first(lists, cell);
+    uint last = lists_heads[cell];
     cellist_for_each(lists, cell, node) last = node;
     return last;
 }
@@ -21,21 +21,21 @@ kernel void set_head(CELLIST_LISTS(Item, lists), uint cell, uint head)
 }
 kernel void set_second(CELLIST_LISTS(Item, lists), uint cell, uint node)
 {
-    lists_nodes[cellist_first(lists, cell)].next = node;
+    lists_nodes[lists_heads[cell]].next = node;
 }
 kernel void self_cycle(CELLIST_LISTS(Item, lists), uint cell)
 {
-    const uint first = cellist_first(lists, cell);
+    const uint first = lists_heads[cell];
     lists_nodes[first].next = first;
 }
 kernel void long_cycle(CELLIST_LISTS(Item, lists), uint cell)
 {
-    lists_nodes[last_of(CELLIST_PASS(lists), cell)].next = cellist_first(lists, cell);
+    lists_nodes[last_of(CELLIST_PASS(lists), cell)].next = lists_heads[cell];
 }
 kernel void share_tail(CELLIST_LISTS(Item, lists), uint cell, uint other)
 {
     lists_nodes[last_of(CELLIST_PASS(lists), cell)].next =
-        lists_nodes[cellist_first(lists, other)].next;
+        lists_nodes[lists_heads[other]].next;
 }
 kernel void share_head(CELLIST_LISTS(Item, lists), uint cell, uint other)
 {

@@ -13,14 +13,16 @@
 //
 // Host time from the first launch until the device is done; the input lies in memory, temporary memory
 // is allocated before. Results are checked once a case, before it is timed. Cases that the device has no room
-// for are left out, and named on standard error.
+// for are left out, and named on standard error. Those that fail are named in the JSON, and the exit status is 1.
 
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -32,9 +34,8 @@
 namespace {
 
 void check(cudaError_t error, const char* what) {
-    if (error == cudaSuccess) return;
-    std::fprintf(stderr, "cellist_bench_cub: %s: %s\n", what, cudaGetErrorString(error));
-    std::exit(1);
+    if (error != cudaSuccess)
+        throw std::runtime_error(std::string(what) + ": " + cudaGetErrorString(error));
 }
 #define CHECK(call) check(call, #call)
 
@@ -64,17 +65,10 @@ struct Workload {
     std::uint32_t occupancy;
     std::uint32_t nodes;
 
-    std::uint32_t cells() const {
-        std::uint32_t cells = 1;
-        while (cells <= nodes / occupancy / 2) cells *= 2;
-        return cells;
-    }
+    std::uint32_t cells() const { return bench_cells(nodes, occupancy); }
     /// The same, halved until one thread can go through each list.
     Workload readable() const {
-        Workload readable = *this;
-        while (bench_longest(readable.nodes, readable.cells(), id) > BENCH_READABLE_NODES)
-            readable.nodes /= 2;
-        return readable;
+        return {distribution, id, occupancy, bench_readable_nodes(nodes, occupancy, id)};
     }
     int cell_bits() const {
         int bits = 0;
@@ -196,18 +190,37 @@ public:
         const std::size_t middle = seconds.size() / 2;
         const double median =
             seconds.size() % 2 == 1 ? seconds[middle] : (seconds[middle - 1] + seconds[middle]) / 2;
+        begin(name);
         std::printf(
-            "%s\n    {\"name\": \"%s\", \"real_time\": %.6f, \"time_unit\": \"ms\", "
-            "\"items_per_second\": %.6g, \"least_ms\": %.6f, \"greatest_ms\": %.6f, "
-            "\"samples\": %zu}",
-            first_ ? "" : ",", name.c_str(), 1e3 * median, nodes / median, 1e3 * seconds.front(),
-            1e3 * seconds.back(), seconds.size());
+            "\"real_time\": %.6f, \"time_unit\": \"ms\", \"items_per_second\": %.6g, "
+            "\"least_ms\": %.6f, \"greatest_ms\": %.6f, \"samples\": %zu}",
+            1e3 * median, nodes / median, 1e3 * seconds.front(), 1e3 * seconds.back(),
+            seconds.size());
         std::fflush(stdout);
+    }
+
+    /// Calls `measure`, which adds cases. What it throws is reported under this name.
+    void attempt(const std::string& name, const std::function<void()>& measure) try {
+        measure();
+    } catch (const std::exception& error) {
+        std::string message = error.what();
+        std::replace(message.begin(), message.end(), '"', '\'');
+        begin(name);
+        std::printf("\"error_occurred\": true, \"error_message\": \"%s\"}", message.c_str());
+        std::fflush(stdout);
+        failed_ = true;
+    }
+
+    bool failed() const { return failed_; }
+
+private:
+    void begin(const std::string& name) {
+        std::printf("%s\n    {\"name\": \"%s\", ", first_ ? "" : ",", name.c_str());
         first_ = false;
     }
 
-private:
     bool first_ = true;
+    bool failed_ = false;
 };
 
 double host_seconds(const std::function<void()>& work) {
@@ -230,15 +243,13 @@ std::vector<double> sample(const Sampling& sampling, const std::function<void()>
     return seconds;
 }
 
-/// Exits unless two buffers are equal.
+/// Throws unless two buffers are equal.
 void compare(const Buffer<std::uint32_t>& found, const Buffer<std::uint32_t>& expected,
-             std::size_t size, const std::string& name) {
+             std::size_t size) {
     std::vector<std::uint32_t> a(size), b(size);
     CHECK(cudaMemcpy(a.data(), found.get(), size * sizeof(a[0]), cudaMemcpyDeviceToHost));
     CHECK(cudaMemcpy(b.data(), expected.get(), size * sizeof(b[0]), cudaMemcpyDeviceToHost));
-    if (a == b) return;
-    std::fprintf(stderr, "cellist_bench_cub: %s: the lists are wrong\n", name.c_str());
-    std::exit(1);
+    if (a != b) throw std::runtime_error("the lists are wrong");
 }
 
 /// The input of a workload, and what comes of it.
@@ -264,7 +275,7 @@ struct SortPath {
         const std::string name = "sort_path/peer:" + peer + "/" + workload.name();
         CHECK(cudaMemset(digests.get(), 0, workload.cells() * sizeof(std::uint32_t)));
         host_seconds(work);
-        compare(digests, expected, workload.cells(), name);
+        compare(digests, expected, workload.cells());
         report.add(name, sample(sampling, work), workload.nodes);
     }
 
@@ -383,7 +394,7 @@ void sort_segments(Report& report, const Sampling& sampling, const Workload& w, 
     // Where cells do not divide the nodes, the last few belong to no list.
     const std::uint32_t sorted = length * w.cells();
     count_unsorted<<<groups(sorted), group>>>(sorted_keys.get(), sorted, length, unsorted.get());
-    compare(unsorted, none, 1, name);
+    compare(unsorted, none, 1);
     report.add(name, sample(sampling, work), w.nodes);
 }
 
@@ -402,11 +413,12 @@ void segmented_sort(Report& report, const Sampling& sampling, const Workload& w)
                   });
 }
 
-/// Whether there is room for keys and values of 16 bytes, in and out, and what CUB takes beside them.
+/// Whether there is room for keys of 4 bytes and values of 16, in and out, as much again for what CUB takes beside
+/// them, and three words for each cell.
 bool fits(const Workload& w) {
     std::size_t free = 0, total = 0;
     CHECK(cudaMemGetInfo(&free, &total));
-    const bool room = std::size_t{w.nodes} * 64 < free;
+    const bool room = std::size_t{w.nodes} * 80 + std::size_t{w.cells()} * 12 < free;
     if (!room) std::fprintf(stderr, "left out, for want of memory: %s\n", w.name().c_str());
     return room;
 }
@@ -417,7 +429,7 @@ std::uint32_t number(const std::string& text) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
     std::uint32_t nodes = 1u << 26, occupancy = 16;
     Sampling sampling;
     for (int i = 1; i < argc; ++i) {
@@ -450,13 +462,21 @@ int main(int argc, char** argv) {
                                  Workload{"hot", BENCH_HOT, occupancy, nodes}}) {
         const Workload w = base.readable();
         if (!fits(w)) continue;
-        sort_values<Record>(report, sampling, w, "cub_values");
-        sort_values<uint4>(report, sampling, w, "cub_values_16");
-        sort_indices(report, sampling, w);
+        report.attempt("sort_path/peer:cub_values/" + w.name(),
+                       [&] { sort_values<Record>(report, sampling, w, "cub_values"); });
+        report.attempt("sort_path/peer:cub_values_16/" + w.name(),
+                       [&] { sort_values<uint4>(report, sampling, w, "cub_values_16"); });
+        report.attempt("sort_path/peer:cub_gather,cub_index/" + w.name(),
+                       [&] { sort_indices(report, sampling, w); });
     }
     for (const std::uint32_t length : {8u, 16u, 32u, 64u}) {
         const Workload w{"coherent", BENCH_COHERENT, length, nodes};
-        if (fits(w)) segmented_sort(report, sampling, w);
+        if (fits(w))
+            report.attempt("segmented_sort/peer:cub_values,cub_gather/" + w.name(),
+                           [&] { segmented_sort(report, sampling, w); });
     }
-    return 0;
+    return report.failed() ? 1 : 0;
+} catch (const std::exception& error) {
+    std::fprintf(stderr, "cellist_bench_cub: %s\n", error.what());
+    return 1;
 }

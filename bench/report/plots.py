@@ -171,7 +171,7 @@ def fewer_layers(all_results):
 
     left = panel(0, "speed-up", "time of all layers / time", "speed_up")
     right = panel(470, "picture", "PSNR against all layers, dB", "psnr_db")
-    return _document(940, 440, [_text(60, 24, "The nearest layers of gearworks, 1280×720", size=15),
+    return _document(940, 440, [_text(60, 24, "The nearest of up to 64 layers of gearworks, 1280×720", size=15),
                                 *left.parts, *right.parts])
 
 

@@ -169,8 +169,7 @@ def compute(results):
     for name, distribution in (("insert_vs_global_counter", "coherent"), ("insert_hot_vs_global_counter", "hot")):
         run.compare(name, distribution, run.insert(distribution), run.insert(distribution, "global"))
 
-    cub = select(results["figures"], "sort_path", peer="cub_values") != []
-    device_peer = "cub" if cub else "boost_compute"
+    device_peer = "cub" if results["platform"] == "NVIDIA CUDA" else "boost_compute"
     run.build_read("build_read_vs_sort", lambda figure: figure["peer"].startswith(device_peer))
     if run.kind == "cpu":
         run.build_read("build_read_vs_cpp", lambda figure: "input" in figure or figure["peer"] in ("std_sort", "parallel_sort"))

@@ -77,7 +77,15 @@ BENCH_FUNCTION bench_uint bench_digest_word(bench_uint word, bench_uint j) {
     return word * (2u * j + 1u);
 }
 
+// What follows is for hosts.
 #ifndef __OPENCL_VERSION__
+
+// nodes / occupancy, rounded down to a power of two; 1 at least.
+inline bench_uint bench_cells(bench_uint nodes, bench_uint occupancy) {
+    bench_uint cells = 1;
+    while (cells <= nodes / occupancy / 2) cells *= 2;
+    return cells;
+}
 
 // About how long the longest list is; an upper bound in all but rare cases.
 inline double bench_longest(bench_uint nodes, bench_uint cells, bench_uint distribution) {
@@ -98,8 +106,16 @@ inline double bench_longest(bench_uint nodes, bench_uint cells, bench_uint distr
     }
 }
 
-// Longest list that one work-item, or thread, goes through in a benchmark.
+// The longest list that one work-item, or thread, goes through in a benchmark.
 #define BENCH_READABLE_NODES 32768.0
+
+// So many nodes, halved until each list can be gone through.
+inline bench_uint bench_readable_nodes(bench_uint nodes, bench_uint occupancy,
+                                       bench_uint distribution) {
+    while (bench_longest(nodes, bench_cells(nodes, occupancy), distribution) > BENCH_READABLE_NODES)
+        nodes /= 2;
+    return nodes;
+}
 
 #endif
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Bytes that operations move at least: what they have to read and write, each once. Rates are taken of these, and
-// compared with that of a copy.
+// Bytes that operations move at least: records, nodes, heads, counters and results, each read and written as often as it
+// has to be; what is small beside them is left out. Rates are of these bytes, and are compared with that of a copy.
 
 #include <cstddef>
 

@@ -1,11 +1,8 @@
 #include "support/workload.hpp"
 
-#include <algorithm>
-#include <bit>
-
 namespace bench {
 
-cl_uint Workload::cells() const { return std::bit_floor(std::max(nodes / occupancy, 1u)); }
+cl_uint Workload::cells() const { return bench_cells(nodes, occupancy); }
 
 double Workload::longest() const { return bench_longest(nodes, cells(), distribution.id); }
 
@@ -16,7 +13,8 @@ std::string Workload::name() const {
 }
 
 Workload readable(Workload workload) {
-    while (workload.longest() > BENCH_READABLE_NODES) workload.nodes /= 2;
+    workload.nodes =
+        bench_readable_nodes(workload.nodes, workload.occupancy, workload.distribution.id);
     return workload;
 }
 

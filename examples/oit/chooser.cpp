@@ -111,17 +111,17 @@ public:
         draw(exact, exact.method->bound(choice_.scene, exact.quality));
         exact_ = contenders_.empty() ? fallback_ : contenders_.front();
         measure_pass();
-        std::vector<Setting> leaders{exact}, others;
+        std::vector<Setting> in_order{exact}, others;
         for (const Setting& setting : settings)
-            if (setting.method == leaders.back().method || setting.method == exact.method)
+            if (setting.method == in_order.back().method || setting.method == exact.method)
                 others.push_back(setting);
             else
-                leaders.push_back(setting);
+                in_order.push_back(setting);
         std::erase_if(others, [&](const Setting& s) { return text(s) == text(exact); });
-        leaders.insert(leaders.end(), others.begin(), others.end());
-        for (std::size_t i = 1; i < leaders.size(); ++i) {
-            progress_(static_cast<double>(i) / static_cast<double>(leaders.size()));
-            consider(leaders[i]);
+        in_order.insert(in_order.end(), others.begin(), others.end());
+        for (std::size_t i = 1; i < in_order.size(); ++i) {
+            progress_(static_cast<double>(i) / static_cast<double>(in_order.size()));
+            consider(in_order[i]);
         }
         play_off();
         finish();

@@ -10,7 +10,6 @@
 #include <CLI/CLI.hpp>
 
 #include "command_line.hpp"
-#include "image.hpp"
 #include "input_error.hpp"
 #include "mesh.hpp"
 #include "method.hpp"
@@ -120,10 +119,12 @@ void set_blend(Scene& scene, Blend blend) {
 }
 
 bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
-    const auto full = [](const std::filesystem::path& path) {
-        return std::filesystem::weakly_canonical(std::filesystem::absolute(path));
+    // Paths that cannot be followed are refused where they are opened.
+    std::error_code error;
+    const auto full = [&](const std::filesystem::path& path) {
+        return std::filesystem::weakly_canonical(std::filesystem::absolute(path, error), error);
     };
-    return full(a) == full(b);
+    return full(a) == full(b) && !error;
 }
 
 // The largest buffers of a frame: image and opaque colour with 16 bytes a sample.
@@ -166,7 +167,7 @@ void check_outputs(const FrameOptions& options, std::span<const Output> outputs)
     for (const Output& output : outputs) {
         const auto& [name, path] = output;
         if (path.empty()) continue;
-        support::check_image_path(path);
+        support::check_output_path(path);
         for (const auto& [other, its_path] : known)
             if (same_file(path, its_path))
                 throw InputError(std::string(name) + " and " + std::string(other) +
@@ -223,8 +224,8 @@ FrameArguments::FrameArguments(CLI::App& app, const FrameOptions& options)
     add("--resolve", resolve_, "where samples are blended: pixel or sample", "WHERE");
     app.add_flag("--depth-range", depth_range_,
                  "blend surfaces that meet within a pixel by their least and greatest depths");
-    add("--depth-scale", depth_scale_, "what 16 and 24 bits of depth divide: linear or reversed",
-        "S");
+    add("--depth-scale", depth_scale_,
+        "what is stored as depth: linear (the depth) or reversed (1 / depth)", "S");
     add("--view", view_, "direction to look from, in degrees", "AZIMUTH,ELEVATION");
     add("--stereo", eyes_, "two eyes, this far apart; the scene has radius 1", "DISTANCE");
     add("--time", time_, "of an animated scene, in seconds", "T");

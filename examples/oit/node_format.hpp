@@ -34,7 +34,7 @@ inline constexpr std::array<NodeFormatName, 5> node_formats{{
     {NodeFormat::rgb565_d16, "rgb565_d16"},
 }};
 
-/// Whether depth is kept as the float that it was computed as.
+/// Whether depth is kept as a float: as it was computed, or 1 / depth.
 [[nodiscard]] constexpr bool has_float_depth(NodeFormat format) {
     return format != NodeFormat::rgba8_d24c8 && format != NodeFormat::rgb565_d16;
 }

@@ -148,10 +148,6 @@ Options parse_options(int count, const char* const* arguments) {
                                       " keeps no fragments: leave out " + std::string(of_nodes));
     read_layers(layers, options);
     read_format(format, options);
-    if (app.count("--depth-scale") > 0 && !options.budget &&
-        has_float_depth(options.quality.format))
-        throw support::InputError("--depth-scale is for depths of 16 and 24 bits, and --format " +
-                                  format + " has floats");
     read_reduce(reduce, options);
     read_memory(memory, options);
     options.quality.epsilon =

@@ -62,6 +62,18 @@ std::string to_string(cellist::Storage storage) {
     return "unknown";
 }
 
+void check_output_path(const std::filesystem::path& path) {
+    const std::filesystem::path folder =
+        path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+    std::error_code error;
+    if (path.empty()) throw InputError("the output path is empty");
+    if (!std::filesystem::is_directory(folder, error))
+        throw InputError("cannot write '" + path.string() + "': the folder '" + folder.string() +
+                         "' does not exist");
+    if (std::filesystem::is_directory(path, error))
+        throw InputError("cannot write '" + path.string() + "': it is a folder");
+}
+
 void print_error(const std::string& name, const std::string& message) {
     std::cerr << name << ": " << first_line(message) << '\n';
 }

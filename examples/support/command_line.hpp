@@ -2,6 +2,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -29,6 +30,10 @@ namespace support {
 /// Throws InputError: the option has none of the values it could have, such as "open or periodic".
 [[noreturn]] void refuse(const std::string& option, const std::string& text,
                          const std::string& expected);
+
+/// Throws InputError unless a file can be written there: the folder exists and the path is not a folder
+/// itself.
+void check_output_path(const std::filesystem::path& path);
 
 /// What main of an example does: prints errors in one line, behind the program's name. The exit
 /// code is 0, or 1 where `program` threw or found a difference and returned false.

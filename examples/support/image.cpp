@@ -16,18 +16,6 @@ double srgb_from_linear(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
 
-void check_image_path(const std::filesystem::path& path) {
-    const std::filesystem::path folder =
-        path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-    std::error_code error;
-    if (path.empty()) throw InputError("the output path is empty");
-    if (!std::filesystem::is_directory(folder, error))
-        throw InputError("cannot write '" + path.string() + "': the folder '" + folder.string() +
-                         "' does not exist");
-    if (std::filesystem::is_directory(path, error))
-        throw InputError("cannot write '" + path.string() + "': it is a folder");
-}
-
 std::vector<std::uint8_t> srgb_bytes(std::span<const cl_float4> pixels) {
     std::vector<std::uint8_t> bytes;
     bytes.reserve(pixels.size() * 3);

@@ -13,10 +13,6 @@ namespace support {
 /// The sRGB encoding of a linear value, both clamped to 0 ... 1. NaN becomes 0.
 [[nodiscard]] double srgb_from_linear(double linear);
 
-/// Throws InputError unless an image can be written there: the folder exists and the path is not a
-/// folder itself.
-void check_image_path(const std::filesystem::path& path);
-
 /// Red, green and blue of linear pixels in 8-bit sRGB.
 [[nodiscard]] std::vector<std::uint8_t> srgb_bytes(std::span<const cl_float4> pixels);
 

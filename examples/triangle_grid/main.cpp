@@ -14,7 +14,6 @@
 
 #include "command_line.hpp"
 #include "grid/triangle_grid.hpp"
-#include "image.hpp"
 #include "mesh.hpp"
 #include "picture.hpp"
 #include "queries.hpp"
@@ -108,7 +107,7 @@ bool check(const std::vector<triangle_grid::Segment>& segments, const std::vecto
 }
 
 bool run(const Options& options) {
-    if (!options.out.empty()) support::check_image_path(options.out);
+    if (!options.out.empty()) support::check_output_path(options.out);
     const cellist::Device device = options.device.empty() ? cellist::Device::choose()
                                                           : cellist::Device::choose(options.device);
     support::Mesh mesh =

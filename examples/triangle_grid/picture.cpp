@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "camera.hpp"
+#include "command_line.hpp"
 #include "image.hpp"
 #include "stopwatch.hpp"
 #include "triangle_grid_kernels.hpp"
@@ -57,7 +58,7 @@ std::vector<cl_float4> corner_normals(const support::Mesh& mesh) {
 
 double draw_picture(const cellist::Device& device, const grid::TriangleGrid& triangles,
                     const support::Mesh& mesh, const PictureOptions& options) {
-    support::check_image_path(options.out);
+    support::check_output_path(options.out);
     const Camera camera = make_camera(mesh, options);
     const cellist::Buffer<cl_float4> normals(device, corner_normals(mesh));
     const auto pixels =

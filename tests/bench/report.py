@@ -127,15 +127,27 @@ class Ratios(unittest.TestCase):
         self.assertEqual((skewed["value"], skewed["goal"]), (1.5, None))
         self.assertEqual(ratio(results, "build_read_vs_sort", "skewed, 2^8 nodes")["value"], 2.0)
 
-    def test_cub_is_the_peer_where_it_ran(self):
-        cub = {"context": {"device": "Device", "cuda_driver": "13.0", "cub": "300000"},
-               "benchmarks": [benchmark(f"sort_path/peer:cub_values/{at('random')}", 6.0),
-                              benchmark(f"sort_path/peer:cub_index/{at('random')}", 5.0)]}
-        results = results_of(output(
-            "gpu", benchmark(f"build_read/input:generated/storage:linked/{at('random')}", 4.0),
-            benchmark(f"sort_path/peer:boost_compute/{at('random')}", 3.0)), cub)
+    def test_cub_is_the_peer_on_nvidia_gpus(self):
+        def nvidia():
+            run = output("gpu", benchmark(f"build_read/input:generated/storage:linked/{at('random')}", 4.0),
+                         benchmark(f"sort_path/peer:boost_compute/{at('random')}", 3.0))
+            run["context"]["platform"] = "NVIDIA CUDA"
+            return run
+
+        def cub(*benchmarks):
+            return {"context": {"device": "Device", "cuda_driver": "13.0", "cub": "300000"},
+                    "benchmarks": list(benchmarks)}
+
+        values = benchmark(f"sort_path/peer:cub_values/{at('random')}", 6.0)
+        index = benchmark(f"sort_path/peer:cub_index/{at('random')}", 5.0)
+        failed = {"name": f"sort_path/peer:cub_index/{at('random')}", "error_occurred": True, "error_message": "wrong"}
+
+        results = results_of(nvidia(), cub(values, index))
         self.assertEqual(ratio(results, "build_read_vs_sort", "random")["value"], 1.25)
         self.assertEqual([r for r in results["ratios"] if r["name"] == "build_read_vs_cpp"], [])
+        self.assertEqual(ratio(results_of(nvidia(), cub(values, failed)), "build_read_vs_sort", "random")["value"], 1.5)
+        for without in (results_of(nvidia()), results_of(nvidia(), cub(failed))):
+            self.assertIsNone(ratio(without, "build_read_vs_sort", "random")["value"])
 
     def test_sorting_takes_the_best_storage(self):
         workload = at("coherent", "node_bytes:16/occupancy:32/nodes:1024")
@@ -174,6 +186,19 @@ class Presentation(unittest.TestCase):
         cases.append(benchmark(f"storage/{at('random')}", 5.0, linked_build_ms=2.0, linked_read_ms=1.0,
                                counted_build_ms=1.0, counted_read_ms=1.0))
         self.results = results_of(output("cpu", *cases))
+
+    def test_times_have_their_spread(self):
+        spread = {"least_ms": 1.0, "greatest_ms": 4.0}
+        results = results_of(output("cpu", benchmark(f"insert/storage:linked/{at('hot')}", 2.0, **spread),
+                                    benchmark(f"insert/storage:linked/allocation:global/{at('hot')}", 9.0)))
+        self.assertIn("linked 2 ms (1 to 4)", tables.ratios_as_text(results))
+        # The bar of the rate: as high as four times the least, which takes a twentieth of the plot's height or more.
+        svg = plots.throughput(results)
+        heights = [abs(float(line.get("y2")) - float(line.get("y1")))
+                   for line in xml.etree.ElementTree.fromstring(svg).iter("{http://www.w3.org/2000/svg}line")
+                   if line.get("stroke") in plots.COLOURS and line.get("x1") == line.get("x2")]
+        self.assertEqual(len(heights), 1)
+        self.assertGreater(heights[0], 13)
 
     def test_a_missed_goal_is_marked(self):
         text = tables.ratios_as_text(self.results)

@@ -48,8 +48,6 @@ TEST_CASE("bad arguments are refused") {
              {"--out x.png --json ./x.png", "same file"},
              {"--out knot.obj", "the mesh"},
              {"--resolve sample", "--samples"},
-             {"--depth-scale reversed", "16 and 24 bits"},
-             {"--depth-scale reversed --format rgba16f", "rgba16f"},
              {"--check-every 2", "--budget"},
              {"--turn 90 --frames 1", "--frames is 1"},
              {"--until 1 --frames 1", "--frames is 1"},
@@ -140,6 +138,7 @@ TEST_CASE("the user's function is read from a file, and its failures are told") 
     CHECK(fine.exit_code == 0);
     CHECK_FALSE(contains(fine.out, "NaN"));
     CHECK(program.run(run + "'" CELLIST_FOG_PATH "'").exit_code == 0);
+    program.require_refused("knot.obj --blend fine.cl --json ./fine.cl", "--blend");
     program.require_refused("knot.obj --size 64x48 --reference --blend fine.cl", "reference");
     program.require_refused("knot.obj --size 64x48 --budget 40dB --blend fine.cl", "--budget");
     program.require_refused("knot.obj --budget ''", "empty");

@@ -91,7 +91,7 @@ TEST_CASE("gearworks moves, and the reference with it") {
     CHECK(oit::compare(reference, before, {}).pixels_over > 100);
 }
 
-TEST_CASE("blends mixes all kinds of blending, in one pixel too") {
+TEST_CASE("blends has surfaces of all kinds, in front of one another") {
     const oit::Scene scene = scene_named("blends");
     require_sound(scene);
     std::set<cl_uint> kinds;

@@ -219,6 +219,8 @@ TEST_CASE("what cannot be compared is refused in a line") {
           {"knot.obj --html missing/a.html", "missing"},
           {"knot.obj --json missing/a.json", "missing"},
           {"knot.obj --csv .", "folder"},
+          {"knot.obj --csv knot.obj", "the mesh"},
+          {"knot.obj --json a --html ./a", "same file"},
           {"knot.obj --layers 8", "--layers"}})
         program.require_refused(arguments, named);
     CHECK(contains(program.run("--help").out, "--methods"));

@@ -8,7 +8,6 @@
 #include <CLI/CLI.hpp>
 
 #include "command_line.hpp"
-#include "image.hpp"
 #include "input_error.hpp"
 #include "number_text.hpp"
 #include "oit/frames/run.hpp"
@@ -44,7 +43,7 @@ Options parse(int count, const char* const* arguments) {
     }
     options.meshes = meshes;
     options.json = json;
-    if (!json.empty()) support::check_image_path(json);
+    if (!json.empty()) support::check_output_path(json);
     options.size = oit::read_between("--size", size, 1e-3, 8, "a number from 0.001 to 8");
     options.frames =
         static_cast<std::uint32_t>(support::read_number("--frames", frames, 1, 1'000'000));

@@ -4,7 +4,6 @@
 
 #include "command_line.hpp"
 #include "frame_options.hpp"
-#include "image.hpp"
 #include "number_text.hpp"
 
 namespace oit {
@@ -59,7 +58,7 @@ GridOptions parse_grid_options(int count, const char* const* arguments) {
     options.frames =
         static_cast<std::uint32_t>(support::read_number("--frames", frames, 1, 10'000));
     options.cost = read_between("--cost", cost, 1, 1e6, "a number from 1 to 1000000");
-    if (!json.empty()) support::check_image_path(json);
+    if (!json.empty()) support::check_output_path(json);
     options.json = json;
     return options;
 }
