@@ -243,6 +243,40 @@ kernel void indices(CELLIST_LISTS(Item, lists), global uint* lengths)
     REQUIRE(host[{9}].size() == 7);
 }
 
+TEST_CASE("walks nest, and their bodies may break and continue") {
+    CELLIST_EACH_STORAGE(storage);
+    Lists<Item> lists(device(), {10}, {.storage = storage});
+    Inserts<Item> inserts;
+    for (cl_uint i = 0; i < 144; ++i) inserts.add(i % 10, {0.0F, i});
+    Inserter(lists).build(lists, inserts);
+    Kernel kernel(device(), R"(
+#include <cellist/lists.clh>
+kernel void walk(CELLIST_LISTS(Item, lists), global uint* found)
+{
+    uint pairs = 0, firsts = 0, even = 0, own = 0;
+    for (int cell = 0; cell < 10; ++cell) {
+        cellist_for_each(lists, cell, a) cellist_for_each(lists, cell, b) ++pairs;
+        cellist_for_each(lists, cell, node) { ++firsts; break; }
+        cellist_for_each(lists, cell, node) {
+            if (cellist_get(lists, node).id % 2) continue;
+            ++even;
+        }
+    }
+    const uint node_cell = 3;
+    cellist_for_each(lists, node_cell, node) ++own;
+    found[0] = pairs;
+    found[1] = firsts;
+    found[2] = even;
+    found[3] = own;
+}
+)",
+                  "walk", lists);
+    const Buffer<cl_uint> found(device(), 4);
+    kernel.run(1, lists, found);
+    // 4 cells with 15 items, and 6 with 14.
+    REQUIRE(found.download() == std::vector<cl_uint>{4 * 225 + 6 * 196, 10, 72, 15});
+}
+
 TEST_CASE("walking a cell outside of the shape visits nothing") {
     CELLIST_EACH_STORAGE(storage);
     CELLIST_RANDOM(random, 101u);

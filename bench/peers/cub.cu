@@ -199,12 +199,15 @@ public:
         std::fflush(stdout);
     }
 
-    /// Calls `measure`, which adds cases. What it throws is reported under this name.
+    /// Calls `measure`, which adds cases. What it throws is reported under this name: of a case, or of
+    /// several that have their setup in common.
     void attempt(const std::string& name, const std::function<void()>& measure) try {
         measure();
     } catch (const std::exception& error) {
+        cudaGetLastError();  // forgets it: the next case would find it
         std::string message = error.what();
-        std::replace(message.begin(), message.end(), '"', '\'');
+        for (char& c : message)
+            if (c == '"' || c == '\\' || static_cast<unsigned char>(c) < ' ') c = '\'';
         begin(name);
         std::printf("\"error_occurred\": true, \"error_message\": \"%s\"}", message.c_str());
         std::fflush(stdout);
@@ -273,10 +276,12 @@ struct SortPath {
     void measure(Report& report, const Sampling& sampling, const std::string& peer,
                  const std::function<void()>& work) {
         const std::string name = "sort_path/peer:" + peer + "/" + workload.name();
-        CHECK(cudaMemset(digests.get(), 0, workload.cells() * sizeof(std::uint32_t)));
-        host_seconds(work);
-        compare(digests, expected, workload.cells());
-        report.add(name, sample(sampling, work), workload.nodes);
+        report.attempt(name, [&] {
+            CHECK(cudaMemset(digests.get(), 0, workload.cells() * sizeof(std::uint32_t)));
+            host_seconds(work);
+            compare(digests, expected, workload.cells());
+            report.add(name, sample(sampling, work), workload.nodes);
+        });
     }
 
     Workload workload;
@@ -388,14 +393,17 @@ void sort_segments(Report& report, const Sampling& sampling, const Workload& w, 
         CHECK(sort(memory.get(), bytes));
         finish(sorted_values.get());
     };
-    host_seconds(work);
-    CHECK(cudaMemset(unsorted.get(), 0, sizeof(std::uint32_t)));
-    CHECK(cudaMemset(none.get(), 0, sizeof(std::uint32_t)));
-    // Where cells do not divide the nodes, the last few belong to no list.
-    const std::uint32_t sorted = length * w.cells();
-    count_unsorted<<<groups(sorted), group>>>(sorted_keys.get(), sorted, length, unsorted.get());
-    compare(unsorted, none, 1);
-    report.add(name, sample(sampling, work), w.nodes);
+    report.attempt(name, [&] {
+        host_seconds(work);
+        CHECK(cudaMemset(unsorted.get(), 0, sizeof(std::uint32_t)));
+        CHECK(cudaMemset(none.get(), 0, sizeof(std::uint32_t)));
+        // Where cells do not divide the nodes, the last few belong to no list.
+        const std::uint32_t sorted = length * w.cells();
+        count_unsorted<<<groups(sorted), group>>>(sorted_keys.get(), sorted, length,
+                                                  unsorted.get());
+        compare(unsorted, none, 1);
+        report.add(name, sample(sampling, work), w.nodes);
+    });
 }
 
 void segmented_sort(Report& report, const Sampling& sampling, const Workload& w) {
@@ -417,7 +425,8 @@ void segmented_sort(Report& report, const Sampling& sampling, const Workload& w)
 /// them, and three words for each cell.
 bool fits(const Workload& w) {
     std::size_t free = 0, total = 0;
-    CHECK(cudaMemGetInfo(&free, &total));
+    // A device that cannot tell is broken: then the case fails, and is named.
+    if (cudaMemGetInfo(&free, &total) != cudaSuccess) return true;
     const bool room = std::size_t{w.nodes} * 80 + std::size_t{w.cells()} * 12 < free;
     if (!room) std::fprintf(stderr, "left out, for want of memory: %s\n", w.name().c_str());
     return room;
@@ -442,7 +451,9 @@ int main(int argc, char** argv) try {
             occupancy = number(value);
         else if (argument.rfind("--bus=", 0) == 0) {
             int device = 0;
-            CHECK(cudaDeviceGetByPCIBusId(&device, value.c_str()));
+            if (cudaDeviceGetByPCIBusId(&device, value.c_str()) != cudaSuccess)
+                throw std::runtime_error("--bus=" + value +
+                                         " is no CUDA device; nvidia-smi lists them");
             CHECK(cudaSetDevice(device));
         } else if (argument == "--effort=tiny")
             sampling = {1, 1, 0};

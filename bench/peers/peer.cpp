@@ -14,4 +14,5 @@ Array<Item> items_of(const Workload& workload) {
                 });
     return items;
 }
+
 }  // namespace bench::peers

@@ -114,13 +114,13 @@ inline double seconds_since(std::chrono::steady_clock::time_point begin) {
 /// The items of a workload, in the order of insertion.
 Array<Item> items_of(const Workload& workload);
 
-/// Adds a case "sort_path/peer:<name>/..." for each workload that peers are compared on. `prepare(workload)` returns
-/// a function that makes the lists, reads them into the digests it is given, and returns the seconds
-/// that took.
+/// Adds a case "sort_path/peer:<name>/..." for each workload that peers are compared on and that the machine
+/// has room for. `prepare(workload)` returns a function that makes the lists, reads them into the digests
+/// it is given, and returns the seconds that took.
 template <class Prepare>
 void add_sort_path(Suite& suite, const std::string& name, const Prepare& prepare) {
     for (const Workload& workload : suite.readable_bases()) {
-        // Input, items and lists.
+        // Input, items and lists, and room to breathe.
         const double items_bytes = double(workload.nodes) * sizeof(Item);
         if (!fits(suite.device().info(), items_bytes, 4 * items_bytes)) continue;
         suite.add("sort_path/peer:" + name + "/" + workload.name(), [=, &suite]() -> Result {

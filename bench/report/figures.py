@@ -53,7 +53,8 @@ def merge(documents, effort, git, note=""):
         results["note"] = note
     benchmarks = [b for document in documents for b in document["benchmarks"]]
     results["figures"] = [_figure(b) for b in benchmarks if not b.get("error_occurred")]
-    failed = [{"name": b["name"], "message": b["error_message"]} for b in benchmarks if b.get("error_occurred")]
+    failed = [{"name": b.get("run_name", b["name"]), "message": b["error_message"].partition("\n")[0]}
+              for b in benchmarks if b.get("error_occurred")]
     if failed:
         results["failed"] = failed
     copies = {_workload(f): f["bytes_per_s"]

@@ -114,8 +114,7 @@ def throughput(results):
     left = _Panel(0, "insert, linked", "million nodes/s", insert, True)
     right = _Panel(470, "whole builds, host time", "million nodes/s", build, True)
     title = f"Throughput against size: {device_title(results)}; medians, least and greatest"
-    return _document(940, 440, [_text(60, 24, title, size=15),
-                                *left.parts, *right.parts])
+    return _document(940, 440, [_text(60, 24, title, size=15), *left.parts, *right.parts])
 
 
 def of_ceiling(results):

@@ -31,7 +31,8 @@ _MARKS = {True: "met", False: "MISSED", None: ""}
 
 
 def ratios_as_text(results):
-    """The table of ratios; what misses its goal is marked. Times are medians, with the least and the greatest."""
+    """The table of ratios; what misses its goal is marked. Times are medians; those of cases of their own have the
+    least and the greatest behind them."""
     rows = [("ratio", "case", "value", "goal", "", "ours", "theirs")]
     for ratio in results["ratios"]:
         rows.append((ratio["name"], ratio["case"], _value(ratio["value"]), _goal(ratio), _MARKS[met(ratio)],
@@ -81,15 +82,21 @@ def conditions_as_markdown(all_results):
     lines = ["| device | driver | effort | nodes, cells | peers | commit | note |", "|---|---|---|---|---|---|---|"]
     for results in all_results:
         peers = sorted({f["peer"] for f in results["figures"] if f["name"] == "sort_path"})
+        failed = f"{len(results['failed'])} cases failed" if results.get("failed") else ""
+        note = "; ".join(filter(None, (results.get("note"), failed)))
         lines.append(f"| {device_title(results)} | {results['driver']} | `{results['effort']}` | {power_of_two(results['nodes'])}, "
                      f"{power_of_two(results['nodes'] // results['occupancy'])} | {', '.join(peers)} | "
-                     f"{results['git']} | {results.get('note', '')} |")
+                     f"{results['git']} | {note} |")
     return "\n".join(lines)
 
 
 def _base(results, name, **labels):
     return fastest(select(results["figures"], name, node_bytes=16, occupancy=results["occupancy"],
                           nodes=results["nodes"], **labels))
+
+
+TITLES = (("random", "random cells"), ("coherent", "neighbours hit neighbouring cells"),
+          ("runs", "16 in a row hit one cell"), ("skewed", "Zipf: a few cells get most"), ("hot", "all in one cell"))
 
 
 def summary_as_markdown(all_results):
@@ -111,15 +118,13 @@ def summary_as_markdown(all_results):
             return f"{found[0]:.1f} ×" if found and found[0] is not None else "–"
         return cell
 
-    for distribution, title in (("random", "random cells"), ("coherent", "neighbours hit neighbouring cells"),
-                                ("runs", "16 in a row hit one cell"), ("skewed", "Zipf: a few cells get most"),
-                                ("hot", "all in one cell")):
+    for distribution, title in TITLES:
         add(f"insert, {title}", insert(distribution))
     add("insert, random, as in the papers: one counter for all, every work-item alone", insert("random", "global"))
     for name, against in (("build_read_vs_sort", "radix or merge sort by cell on the same device"),
                           ("build_read_vs_cpp", "the best C++ on the same cores")):
-        for distribution in ("random", "coherent", "runs"):
-            add(f"build and read, {distribution}, against {against}", ratio(name, distribution))
+        for distribution, title in TITLES[:3]:
+            add(f"build and read, {title}, against {against}", ratio(name, distribution))
     for length in LENGTHS:
         add(f"sort lists of {length}, against segmented sort or `std::sort`",
             ratio("sort_vs_segmented_sort", f"lists of {length}"))

@@ -109,7 +109,7 @@ inline double bench_longest(bench_uint nodes, bench_uint cells, bench_uint distr
 // The longest list that one work-item, or thread, goes through in a benchmark.
 #define BENCH_READABLE_NODES 32768.0
 
-// So many nodes, halved until each list can be gone through.
+// The number of nodes, halved until one work-item can go through each list.
 inline bench_uint bench_readable_nodes(bench_uint nodes, bench_uint occupancy,
                                        bench_uint distribution) {
     while (bench_longest(nodes, bench_cells(nodes, occupancy), distribution) > BENCH_READABLE_NODES)

@@ -1,7 +1,8 @@
 #pragma once
 
-// Bytes that operations move at least: records, nodes, heads, counters and results, each read and written as often as it
-// has to be; what is small beside them is left out. Rates are of these bytes, and are compared with that of a copy.
+// Bytes that operations have to move at least: records, nodes, heads, counters and results, each read
+// and written as often as it must be. What is small beside them is left out. Rates are of these bytes,
+// and are compared with the rate of a copy.
 
 #include <cstddef>
 
@@ -9,8 +10,9 @@
 
 namespace bench {
 
-/// All runs of an inserting kernel: the records that it stores, and reading and writing a head or a counter for each;
-/// Storage::counted reads the offset as well. In a single pass, it stores a node.
+/// All runs of the inserting kernel together, of which there were `kernel_runs`: storing the records, and
+/// reading and writing a head or a counter for each. Storage::counted in two runs also counts first, and
+/// reads an offset for each; in one run it only stores nodes.
 [[nodiscard]] double insert_bytes(const Workload& workload, const Keeping& keeping,
                                   std::size_t kernel_runs);
 /// Emptying the lists, inserting, and moving the records where there is a single pass into Storage::counted.

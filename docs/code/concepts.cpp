@@ -31,6 +31,29 @@ kernel void lowest(CELLIST_LISTS(Particle, bins), global float* lowest)
 }
 )";
 
+constexpr auto nearest_source = R"(
+#include <cellist/lists.clh>
+
+// The distance of each particle to the nearest other one, where that is less than the size of a cell.
+kernel void nearest(CELLIST_LISTS(Particle, bins), global const Particle* particles, float cell_size,
+                    global float* distances)
+{
+    Particle p = particles[get_global_id(0)];
+    int x = p.x / cell_size, y = p.y / cell_size, z = p.z / cell_size;
+    float least = cell_size;
+    for (int k = z - 1; k <= z + 1; ++k)
+        for (int j = y - 1; j <= y + 1; ++j)
+            for (int i = x - 1; i <= x + 1; ++i)
+                cellist_for_each(bins, cellist_cell3(bins, i, j, k), node) {
+                    Particle other = cellist_get(bins, node);
+                    if (other.id != p.id)
+                        least = fmin(least, distance((float3)(p.x, p.y, p.z),
+                                                     (float3)(other.x, other.y, other.z)));
+                }
+    distances[get_global_id(0)] = least;
+}
+)";
+
 int main() {
     std::vector<Particle> host(100'000);
     for (cl_uint i = 0; i < host.size(); ++i)
@@ -53,6 +76,15 @@ int main() {
 
     check(result[0] == 0.5f, "the lowest particle of the first bin");
     check(lengths.total == bins.download().records().size(), "the number of binned particles");
+
+    // Two particles in cells side by side, and two in one place.
+    cellist::Buffer<Particle> few(
+        device, std::vector<Particle>{{1, 1, 1, 0}, {1, 1, 4, 1}, {9, 9, 9, 2}, {9, 9, 9, 3}});
+    bins.build(bin, few.size(), few, 4.0f);
+    cellist::Buffer<cl_float> distances(device, few.size());
+    cellist::Kernel nearest(device, nearest_source, "nearest", bins);
+    nearest.run(few.size(), bins, few, 4.0f, distances);
+    check(distances.download() == std::vector<cl_float>{3, 3, 0, 0}, "the nearest neighbours");
 
     // Particles outside of the grid are counted, never stored.
     cellist::BuildReport report = bins.build(bin, particles.size(), particles, 1.0f);

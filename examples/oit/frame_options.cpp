@@ -121,6 +121,7 @@ void set_blend(Scene& scene, Blend blend) {
 bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
     // Paths that cannot be followed are refused where they are opened.
     std::error_code error;
+    if (std::filesystem::equivalent(a, b, error)) return true;
     const auto full = [&](const std::filesystem::path& path) {
         return std::filesystem::weakly_canonical(std::filesystem::absolute(path, error), error);
     };
@@ -160,11 +161,11 @@ double read_between(const std::string& option, const std::string& text, double l
     return *value;
 }
 
-void check_outputs(const FrameOptions& options, std::span<const Output> outputs) {
-    std::vector<Output> known;
-    if (find_scene(options.scene) == nullptr) known.emplace_back("the mesh", options.scene);
-    if (options.blend_function) known.emplace_back("--blend", options.blend_function->file_name);
-    for (const Output& output : outputs) {
+void check_outputs(const FrameOptions& options, std::span<const NamedFile> outputs) {
+    std::vector<NamedFile> known;
+    if (find_scene(options.scene) == nullptr) known.push_back({"the mesh", options.scene});
+    if (options.blend_function) known.push_back({"--blend", options.blend_function->file_name});
+    for (const NamedFile& output : outputs) {
         const auto& [name, path] = output;
         if (path.empty()) continue;
         support::check_output_path(path);

@@ -6,7 +6,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include <cellist/cellist.hpp>
@@ -61,12 +60,15 @@ void add_option(CLI::App& app, const char* name, std::string& value, const char*
 [[nodiscard]] double read_between(const std::string& option, const std::string& text, double least,
                                   double most, const std::string& expected);
 
-/// An option that names a file to write, and the file; it may be empty, and is not written then.
-using Output = std::pair<std::string_view, std::filesystem::path>;
+/// A file, and how messages name it: for the most part by the option that it was given with.
+struct NamedFile {
+    std::string_view name;
+    std::filesystem::path path;  ///< may be empty where nothing is to be written
+};
 
-/// Throws InputError unless each of the files can be written, and none is another or one that the
-/// options read.
-void check_outputs(const FrameOptions& options, std::span<const Output> outputs);
+/// Throws InputError unless a file can be written at each path that is not empty, and none of them is
+/// another one, or one that the options read.
+void check_outputs(const FrameOptions& options, std::span<const NamedFile> outputs);
 
 /// For the end of a help text: all methods and scenes.
 [[nodiscard]] std::string help_on_tables();
@@ -75,7 +77,8 @@ void check_outputs(const FrameOptions& options, std::span<const Output> outputs)
 /// image of their size.
 [[nodiscard]] cellist::Device choose_device(const FrameOptions& options);
 
-/// The scene without a floor, from a file or computed. Throws InputError where a file holds none.
+/// The scene without a floor, from a file or computed. Throws InputError where there is neither a file nor a
+/// scene of this name, or the file holds no mesh.
 [[nodiscard]] Scene make_scene(const FrameOptions& options);
 
 /// What the eyes see.

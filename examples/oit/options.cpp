@@ -114,7 +114,7 @@ Options parse_options(int count, const char* const* arguments) {
     frame.read(options);
     options.out = out;
     options.json = json;
-    const Output outputs[] = {{"--out", options.out}, {"--json", options.json}};
+    const NamedFile outputs[] = {{"--out", options.out}, {"--json", options.json}};
     check_outputs(options, outputs);
     if (budget.empty()) {
         if (app.count("--check-every") > 0)

@@ -26,10 +26,10 @@ enum class Storage {
     /// One pass: a node from the pool, linked to its cell. Reading follows links.
     linked,
     /// Two passes over the same kernel, count and fill. The lists lie behind one another: reading is
-    /// fast, and the pool holds exactly the records. The kernel must insert the same records twice.
+    /// fast, and the pool holds exactly the records. The kernel must insert as many records into each cell both times.
     /// Processors under PoCL take one pass where they can, with as much memory again as linked takes.
     counted,
-    /// One pass: a number of slots for each cell. Fastest where all lists are short.
+    /// One pass: a number of slots for each cell. For lists that are about equally long.
     fixed,
     /// One of the others. The first blocking builds of a container try them in turn and measure them;
     /// the best is kept from then on. See docs/storages.md.

@@ -66,6 +66,18 @@ TEST_CASE("a budget is decibels, a fraction or a number") {
     }
 }
 
+TEST_CASE("a search tells how far it is, from 0 to 1") {
+    const oit::Scene scene = random_scene(1, {oit::Blend::over});
+    const oit::Frame frame{.scene = scene, .views = {view_from(30)}};
+    std::vector<double> parts;
+    const oit::Keeper keeper(device(), frame, oit::parse_budget("35dB"), 1,
+                             [&](double part) { parts.push_back(part); });
+    REQUIRE(parts.size() > 2);
+    CHECK(parts.front() == 0);
+    CHECK(parts.back() == 1);
+    CHECK(std::ranges::is_sorted(parts));
+}
+
 TEST_CASE("what is chosen meets the budget, also after the view has changed") {
     const oit::Scene scene = random_scene(1, {oit::Blend::over});
     for (const char* text : {"35dB", "1/255"}) {

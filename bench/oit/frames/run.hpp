@@ -27,7 +27,7 @@ struct Case {
 [[nodiscard]] Case mesh_case(const std::string& file);
 /// A scene of the example's table, at 1280 x 720.
 [[nodiscard]] Case scene_case(const std::string& name);
-/// gearworks from where, and when, pixels have the most layers: 64 of them at the full size.
+/// gearworks from the view, and at the time, where a pixel has the most layers: 64 at 1280 x 720.
 [[nodiscard]] Case gearworks_of_most_layers();
 /// The same, drawn otherwise.
 [[nodiscard]] Case with(Case original, const std::string& what,

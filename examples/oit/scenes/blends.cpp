@@ -49,7 +49,7 @@ std::vector<dvec2> bottle_profile(double radius, double shoulder, double neck_ra
     return divided(profile, 0.05);
 }
 
-// Puts the still life together.
+// Builds the scene part by part.
 class Builder {
 public:
     explicit Builder(float alpha) : alpha_(alpha) {}
@@ -61,7 +61,7 @@ public:
         add_filters();
         for (const double x : {0.38, 0.62}) add_candle({x, 0.02});
         scene_.look = studio_look(static_cast<float>(tray_height) - 0.05F);
-        // Filters and media are seen before light.
+        // A bright background: filters and media only take light away.
         std::ranges::copy(Tint{0.42F, 0.47F, 0.55F}, scene_.look.background_top);
         std::ranges::copy(Tint{0.78F, 0.76F, 0.72F}, scene_.look.background_bottom);
         return std::move(scene_);
@@ -75,7 +75,7 @@ private:
         scene_.materials.push_back(material);
     }
 
-    /// What was turned about the z axis stands upright on the tray at (x, z), so much above it.
+    /// Stands what was turned about the z axis upright, at (x, z) and so far above the tray.
     static glm::dmat4 standing(const dvec2& at, double above = gap) {
         return glm::rotate(glm::translate(glm::dmat4(1), dvec3(at.x, tray_height + above, at.y)),
                            -turn / 4, dvec3(1, 0, 0));
@@ -118,7 +118,7 @@ private:
         }
     }
 
-    /// An opaque candle in a chimney of glass; its flame is made of surfaces in one another.
+    /// An opaque candle in a glass chimney. Its flame is four surfaces inside one another.
     void add_candle(const dvec2& at) {
         const dvec2 wax[] = {{0, 0}, {0.06, 0}, {0.06, 0.28}, {0.05, 0.29}, {0, 0.29}};
         add(lathe(divided(wax, 0.05), 48, Corners::sharp),

@@ -60,7 +60,7 @@ TradeoffOptions parse_tradeoff_options(int count, const char* const* arguments) 
     options.json = json;
     options.csv = csv;
     options.html = html;
-    const Output outputs[] = {
+    const NamedFile outputs[] = {
         {"--json", options.json}, {"--csv", options.csv}, {"--html", options.html}};
     check_outputs(options, outputs);
     return options;

@@ -17,7 +17,7 @@ class Memory {
 public:
     Memory() = default;
     /// `count` elements of `element_bytes`. Throws Error beyond the device's limit, naming `what`, and
-    /// OpenClError where there is no memory; a GPU's driver may tell so at the first use only.
+    /// OpenClError where there is no memory; some drivers of GPUs tell so only at the first use.
     Memory(std::shared_ptr<DeviceState> state, std::uint64_t count, std::size_t element_bytes,
            const char* what = "buffer");
 
