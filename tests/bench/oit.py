@@ -34,10 +34,10 @@ def write_meshes(folder):
     (folder / "dragon.ply").write_text("\n".join(ply) + "\n", encoding="utf-8")
 
 
-def run(folder, *options):
-    """The results of a small run of scripts/bench-oit, and what it printed."""
+def run(build, folder, *options):
+    """The results of scripts/bench-oit with the programs of a build, and what it printed."""
     out = folder / "results.json"
-    command = [ROOT / "scripts/bench-oit", "--build", BUILD, "--json", out, "--git", "abc", "--frames", "1"]
+    command = [ROOT / "scripts/bench-oit", "--build", build, "--json", out, "--git", "abc", "--frames", "1"]
     done = subprocess.run([*command, *options], capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise AssertionError(done.stdout + done.stderr)
@@ -53,7 +53,7 @@ class TinyRun(unittest.TestCase):
         with tempfile.TemporaryDirectory() as directory:
             folder = pathlib.Path(directory)
             write_meshes(folder)
-            results, printed = run(folder, "--meshes", folder, "--size", "0.08", "--filter",
+            results, printed = run(BUILD, folder, "--meshes", folder, "--size", "0.08", "--filter",
                                    "^(frame_times|exact_methods|fewer_layers|plain_cpp)/|^accuracy/(teapot|smoke|extreme-coplanar)")
         self.assertNotIn("left_out", results)
         self.assertEqual(results["git"], "abc")
@@ -74,7 +74,7 @@ class TinyRun(unittest.TestCase):
 
     def test_cases_without_their_mesh_are_left_out_and_named(self):
         with tempfile.TemporaryDirectory() as directory:
-            results, printed = run(pathlib.Path(directory), "--size", "0.05", "--filter",
+            results, printed = run(BUILD, pathlib.Path(directory), "--size", "0.05", "--filter",
                                    "^frame_times/teapot|^accuracy/extreme-nan")
         self.assertEqual([entry["what"] for entry in results["left_out"]], ["frame_times/teapot"])
         self.assertEqual(len(results["accuracy"]), 1)
@@ -84,6 +84,28 @@ class TinyRun(unittest.TestCase):
 def accuracy(case, over, explained):
     return {"case": case, "pixels": 100000, "pixels_over": over, "pixels_explained": explained,
             "pixels_of_another_order": min(explained, 9), "max_abs_error": 0.5, "psnr_db": None}
+
+
+class Script(unittest.TestCase):
+    """scripts/bench-oit with programs that only write what they are told to."""
+    PROGRAM = """#!/usr/bin/env python3
+import json, sys
+assert "" not in sys.argv
+with open(sys.argv[sys.argv.index("--json") + 1], "w", encoding="utf-8") as file:
+    json.dump({}, file)
+"""
+
+    def test_without_a_filter_all_programs_run(self):
+        with tempfile.TemporaryDirectory() as directory:
+            folder = pathlib.Path(directory)
+            (folder / "bin").mkdir()
+            for name, output in (("cellist-oit-frames", Goals.RESULTS), ("cellist-budget-grid", {"cases": [{"met": True}]})):
+                program = folder / "bin" / name
+                program.write_text(self.PROGRAM.format(output), encoding="utf-8")
+                program.chmod(0o755)
+            results, printed = run(folder, folder)
+        self.assertEqual(results["budget_grid"], [{"met": True}])
+        self.assertIn("budget met", printed)
 
 
 class Goals(unittest.TestCase):
