@@ -10,7 +10,7 @@ namespace {
 
 /// Builds that count, of each storage in a trial.
 constexpr std::uint32_t samples = 3;
-/// A storage that took this many times as long as another is not measured again, or at all.
+/// A storage that twice took this many times as long as another is not measured again, or at all.
 constexpr double hopeless = 2;
 /// Storage::fixed may have this many slots for each record, and so many in any case: the pool of
 /// linked lists starts with as many nodes.
@@ -111,8 +111,9 @@ void Chooser::measured(const Trial& trial) {
                             median_of(candidate.costs, &Cost::read_seconds)};
     }
     ++candidate.builds;
+    // Two, since the second build of a storage may be the first to allocate and compile what all others use.
     if (candidate.builds > samples ||
-        (candidate.is_measured() &&
+        (candidate.costs.size() >= 2 &&
          total_seconds(candidate.median) > hopeless * total_seconds(best()->median)))
         next_candidate();
 }

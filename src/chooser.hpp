@@ -28,7 +28,7 @@ inline constexpr std::uint32_t walk_most = 1u << 20;
 /// what was measured.
 ///
 /// A trial builds with each storage in turn: once to warm up, then up to three times, fewer where the
-/// first shows that another storage is twice as fast. The median time of a build and `expected_reads`
+/// first two show that another storage is twice as fast. The median time of a build and `expected_reads`
 /// times that of a read decide. When the number of records has doubled or halved, another
 /// trial follows; ever more builds must have passed since the last, so that numbers that go to and fro
 /// do not keep the container on trial.

@@ -69,7 +69,7 @@ TEST_CASE("the storage with the least time for a build and all reads is chosen")
         INFO(chooser.reason());
         for (const Storage storage : all_storages) {
             REQUIRE(total(chooser.storage()) <= total(storage) * (1 + 1e-9));
-            REQUIRE(count(tried, storage) >= 2);
+            REQUIRE(count(tried, storage) >= 3);
         }
         // Once to warm up, and three times.
         REQUIRE(count(tried, chooser.storage()) == 4);
@@ -77,15 +77,27 @@ TEST_CASE("the storage with the least time for a build and all reads is chosen")
     std::cout << "automatic: " << cases << " choices" << std::endl;
 }
 
-TEST_CASE("linked is first, and what is twice as slow is measured once") {
+TEST_CASE("linked is first, and what is twice as slow is measured twice") {
     Chooser chooser(container(), {});
     REQUIRE(chooser.storage() == Storage::linked);
     REQUIRE(contains(chooser.reason(), "run cellist tune"));
     const auto tried = try_all(chooser, {{1e-3, 1e-3}, {3.5e-3, 1e-3}, {1e-3, 2e-3}});
     REQUIRE(count(tried, Storage::linked) == 4);
-    REQUIRE(count(tried, Storage::counted) == 2);
+    REQUIRE(count(tried, Storage::counted) == 3);
     REQUIRE(count(tried, Storage::fixed) == 4);
     REQUIRE(chooser.storage() == Storage::linked);
+}
+
+TEST_CASE("a storage that is slow in its second build, too, can be chosen") {
+    Chooser chooser(container(), {});
+    int counted = 0;
+    while (chooser.on_trial()) {
+        double seconds = 1e-3;
+        // Where it takes one pass from the second build on, that allocates and compiles.
+        if (chooser.storage() == Storage::counted) seconds = ++counted <= 2 ? 1 : 0.5e-3;
+        chooser.measured({{seconds, 1e-3}, records, 20});
+    }
+    REQUIRE(chooser.storage() == Storage::counted);
 }
 
 TEST_CASE("neither the first build nor a disturbed one counts") {
@@ -293,7 +305,7 @@ TEST_CASE("builds without records teach nothing") {
     Chooser chooser(container(), {});
     for (int i = 0; i < 20; ++i) chooser.measured({{1e-3, 1e-3}, 0, 0});
     REQUIRE(chooser.storage() == Storage::linked);
-    REQUIRE(try_all(chooser, {{2e-3, 1e-3}, {1e-3, 1e-3}, {3e-3, 3e-3}}).size() == 10);
+    REQUIRE(try_all(chooser, {{2e-3, 1e-3}, {1e-3, 1e-3}, {3e-3, 3e-3}}).size() == 4 + 4 + 3);
     REQUIRE(chooser.storage() == Storage::counted);
 }
 
