@@ -5,6 +5,7 @@
 #include <exception>
 #include <limits>
 #include <map>
+#include <span>
 #include <utility>
 
 #include "first_line.hpp"
@@ -112,12 +113,11 @@ public:
         exact_ = contenders_.empty() ? fallback_ : contenders_.front();
         measure_pass();
         std::vector<Setting> in_order{exact}, others;
-        for (const Setting& setting : settings)
+        for (const Setting& setting : std::span(settings).subspan(1))  // behind the exact one
             if (setting.method == in_order.back().method || setting.method == exact.method)
                 others.push_back(setting);
             else
                 in_order.push_back(setting);
-        std::erase_if(others, [&](const Setting& s) { return text(s) == text(exact); });
         in_order.insert(in_order.end(), others.begin(), others.end());
         for (std::size_t i = 1; i < in_order.size(); ++i) {
             progress_(static_cast<double>(i) / static_cast<double>(in_order.size()));

@@ -113,9 +113,9 @@ void append_batches(std::vector<RasterBatch>& batches, std::size_t instance, cl_
                            first + begin + std::min(size, count - begin)});
 }
 
-// Threads of a processor take many groups at a time, one behind the other: half of those that are left, where two
-// threads run under PoCL. So that a dense part of a mesh does not fall to one of them, sixteenths of the
-// batches follow one another in the order of their reversed bits.
+// Threads of a processor take many groups at a time, one behind the other: under PoCL 3.1 each its share of
+// those that are left, up to a bound. So that a dense part of a mesh does not fall to one of them, sixteenths
+// of the batches follow one another in the order of their reversed bits.
 std::vector<RasterBatch> in_order_for(const cellist::Device& device,
                                       std::vector<RasterBatch> batches) {
     if (device.info().type == CL_DEVICE_TYPE_GPU) return batches;
