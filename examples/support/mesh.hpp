@@ -3,9 +3,12 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 namespace support {
 
@@ -22,12 +25,29 @@ struct MeshDrops {
     }
 };
 
+/// The axis that points up in a file.
+enum class UpAxis { unknown, x, y, z };
+
+/// What a file says about the look of a surface.
+struct MeshMaterial {
+    std::string name;
+    std::optional<glm::vec3> base_colour;  ///< linear RGB; nothing where the file does not say
+    std::optional<float> opacity;          ///< 0 to 1; nothing where the file does not say
+};
+
 /// Indexed triangles with a normal at each vertex. Normals have length 1 and lie on the side from
 /// which a triangle's corners run counter-clockwise.
 struct Mesh {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;
     std::vector<std::array<std::uint32_t, 3>> triangles;
+    /// Linear RGB and opacity of each vertex, factors of the material's; or empty.
+    std::vector<glm::vec4> colours;
+    std::vector<MeshMaterial> materials;
+    /// Index into `materials` of each triangle; or empty.
+    std::vector<std::uint32_t> triangle_materials;
+    std::uint64_t ignored_textures = 0;  ///< textures that the file names and that are not drawn
+    UpAxis up = UpAxis::unknown;         ///< of the file, where it has a convention
     MeshDrops drops;
     /// The file ends within a line, so that it may have been cut off.
     bool ends_within_line = false;
