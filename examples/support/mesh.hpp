@@ -18,10 +18,14 @@ struct MeshDrops {
     std::uint64_t nonfinite_triangles = 0;     ///< faces that used one
     std::uint64_t out_of_range_triangles = 0;  ///< faces with an index beyond the vertices
     std::uint64_t degenerate_triangles = 0;    ///< triangles with two equal corners
+    std::uint64_t crossing_polygons = 0;       ///< polygons that cross themselves
     std::uint64_t points_and_lines = 0;        ///< faces with less than three corners
+    std::uint64_t bytes_after_end = 0;         ///< of the file, after all that it declares
 
+    /// Faces with an area that are not drawn.
     [[nodiscard]] std::uint64_t triangles() const {
-        return nonfinite_triangles + out_of_range_triangles + degenerate_triangles;
+        return nonfinite_triangles + out_of_range_triangles + degenerate_triangles +
+               crossing_polygons;
     }
 };
 

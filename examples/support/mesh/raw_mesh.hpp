@@ -30,6 +30,7 @@ struct RawMesh {
     std::vector<MeshMaterial> materials;
 
     MeshDrops drops;                     ///< what the reader itself left out
+    bool ends_within_line = false;       ///< as Mesh::ends_within_line
     std::uint64_t ignored_textures = 0;  ///< textures that the file names for what is drawn
     UpAxis up = UpAxis::unknown;         ///< of the format or the file, where it has one
 };
