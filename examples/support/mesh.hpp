@@ -18,14 +18,14 @@ struct MeshDrops {
     std::uint64_t nonfinite_triangles = 0;     ///< faces that used one
     std::uint64_t out_of_range_triangles = 0;  ///< faces with an index beyond the vertices
     std::uint64_t degenerate_triangles = 0;    ///< triangles with two equal corners
-    std::uint64_t crossing_polygons = 0;       ///< polygons that cross themselves
+    std::uint64_t unsplit_polygons = 0;        ///< that cross themselves or take too long to split
     std::uint64_t points_and_lines = 0;        ///< faces with less than three corners
     std::uint64_t bytes_after_end = 0;         ///< of the file, after all that it declares
 
     /// Faces with an area that are not drawn.
     [[nodiscard]] std::uint64_t triangles() const {
         return nonfinite_triangles + out_of_range_triangles + degenerate_triangles +
-               crossing_polygons;
+               unsplit_polygons;
     }
 };
 
@@ -57,21 +57,18 @@ struct Mesh {
     bool ends_within_line = false;
 };
 
-/// Loads every mesh of a file that Assimp reads, placed by its node's transform. Polygons are
-/// triangulated. Vertices with equal position and normal are merged; smooth normals are made where
-/// the file has none. Triangles that disagree with their normals are turned round. Throws
-/// InputError where the file is missing, unreadable, empty or truncated, or has no triangle that
-/// can be drawn.
+/// Loads every mesh of a file: PLY, OBJ, glTF and GLB, OFF, STL, and what else Assimp reads. Reads
+/// regular files of up to 1 GiB. Polygons are triangulated, also concave ones. Vertices with equal
+/// position, normal and colour are merged, and unused ones left out; smooth normals are made where
+/// the file has none. Triangles that disagree with their normals are turned round. Throws InputError
+/// in one line that names the file, and the place in it, where the file is missing, no regular file,
+/// unreadable, empty, damaged or truncated, or has no triangle that can be drawn.
 [[nodiscard]] Mesh load_mesh(const std::filesystem::path& path);
 
-/// Merges equal vertices, drops what cannot be drawn, and makes the normals that are missing (of
-/// length 0). Each triangle starts at its vertex with the lowest index. What load_mesh does after
-/// reading; for meshes from elsewhere.
+/// Merges equal vertices, leaves out vertices without a triangle, drops and counts what cannot be
+/// drawn, and makes the normals that are missing (of length 0). Each triangle starts at its vertex
+/// with the lowest index. What load_mesh does after reading; for meshes from elsewhere.
 [[nodiscard]] Mesh clean_mesh(const Mesh& mesh);
-
-/// Throws InputError where a PLY file ends before all elements that its header declares. Other
-/// files pass.
-void check_ply_is_complete(const std::filesystem::path& path);
 
 /// Moves the mesh to the origin and scales it so that its smallest enclosing sphere (to within a
 /// few percent) has radius 1. Coordinates up to the largest float are safe.

@@ -20,7 +20,8 @@ struct RawMesh {
     static constexpr std::uint32_t no_vertex = 0xFFFFFFFF;
 
     std::vector<glm::vec3> positions;
-    std::vector<glm::vec3> normals;  ///< one for each position, 0 where the file has none; or empty
+    /// One for each position, of any length, 0 where the file has none; or empty.
+    std::vector<glm::vec3> normals;
     std::vector<glm::vec4> colours;  ///< linear RGB and opacity of each position; or empty
 
     std::vector<std::uint32_t> corners;    ///< vertices of all polygons, one polygon after another

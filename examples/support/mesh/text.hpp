@@ -14,6 +14,12 @@ namespace support {
 /// An integer with an optional sign. Magnitudes beyond 64 bits are no integers.
 [[nodiscard]] std::optional<std::int64_t> parse_integer(std::string_view word);
 
+/// A magnitude beyond float becomes infinity.
+[[nodiscard]] float to_float(double value);
+
+/// A linear colour channel from an sRGB one (IEC 61966-2-1), both 0 to 1.
+[[nodiscard]] float linear_from_srgb(double value);
+
 /// A word of a file for a message: control characters become '?', and 40 characters at most are
 /// kept.
 [[nodiscard]] std::string printable(std::string_view word);
@@ -28,6 +34,10 @@ public:
     [[nodiscard]] std::string_view next_word();
     /// The next word on this line; empty at its end.
     [[nodiscard]] std::string_view next_word_on_line();
+    /// Whether no word follows on this line.
+    [[nodiscard]] bool at_line_end() const;
+    /// Whether `count` lines with words follow at least, the rest of this line included.
+    [[nodiscard]] bool has_lines(std::uint64_t count) const;
     /// What is left of this line, without its end, and moves to the next line.
     std::string_view rest_of_line();
 
@@ -35,7 +45,7 @@ public:
     [[nodiscard]] std::size_t offset() const { return at_; }
     /// The number of the line on which the last word stood. The first line is 1.
     [[nodiscard]] std::uint64_t line() const { return line_; }
-    /// Words that start with this character run to the end of their line and are skipped.
+    /// From this character to the end of its line is a comment, which is skipped.
     void set_comment(char mark) { comment_ = mark; }
 
 private:
