@@ -23,7 +23,9 @@ std::string dropped_text(const support::MeshDrops& drops) {
     add(drops.nonfinite_triangles, "with NaN or infinite vertices");
     add(drops.out_of_range_triangles, "with indices out of range");
     add(drops.degenerate_triangles, "degenerate");
+    add(drops.unsplit_polygons, "polygons that cross themselves or are too intricate");
     add(drops.points_and_lines, "points or lines");
+    add(drops.bytes_after_end, "bytes after the end");
     return text.empty() ? "" : " (dropped: " + text + ")";
 }
 
@@ -186,7 +188,9 @@ void write_json(const Report& report, const std::filesystem::path& path) {
                        {"nonfinite_triangles", report.drops.nonfinite_triangles},
                        {"out_of_range_triangles", report.drops.out_of_range_triangles},
                        {"degenerate_triangles", report.drops.degenerate_triangles},
-                       {"points_and_lines", report.drops.points_and_lines}};
+                       {"unsplit_polygons", report.drops.unsplit_polygons},
+                       {"points_and_lines", report.drops.points_and_lines},
+                       {"bytes_after_end", report.drops.bytes_after_end}};
     json["fragments"] = nullptr;
     if (report.lengths) {
         json["fragments"] = report.lengths->total;

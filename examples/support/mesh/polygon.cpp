@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -93,41 +94,8 @@ double PolygonSplitter::area_left() const {
     return sum;
 }
 
-void PolygonSplitter::sort_reflex_into_grid() {
-    const auto count = static_cast<std::uint32_t>(points_.size());
-    glm::dvec2 low = points_[0], high = points_[0];
-    std::uint32_t reflex_count = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        low = glm::min(low, points_[i]);
-        high = glm::max(high, points_[i]);
-        if (reflex_[i]) ++reflex_count;
-    }
-    grid_low_ = low;
-    grid_side_ = static_cast<std::uint32_t>(
-        std::clamp(std::sqrt(static_cast<double>(reflex_count)), 1.0, 4096.0));
-    cells_per_unit_ = grid_side_ / std::max(high.x - low.x, high.y - low.y);
-    const auto cell_of = [&](std::uint32_t i) {
-        const glm::dvec2 place = (points_[i] - grid_low_) * cells_per_unit_;
-        const auto along = [&](double at) {
-            return std::min(static_cast<std::uint32_t>(at), grid_side_ - 1);
-        };
-        return along(place.y) * grid_side_ + along(place.x);
-    };
-    cell_begins_.assign(std::size_t{grid_side_} * grid_side_ + 1, 0);
-    for (std::uint32_t i = 0; i < count; ++i)
-        if (reflex_[i]) ++cell_begins_[cell_of(i) + 1];
-    for (std::size_t cell = 1; cell < cell_begins_.size(); ++cell)
-        cell_begins_[cell] += cell_begins_[cell - 1];
-    cell_corners_.resize(reflex_count);
-    for (std::uint32_t i = count; i-- > 0;)
-        if (reflex_[i]) cell_corners_[--cell_begins_[cell_of(i) + 1]] = i;
-    // Each entry is now the start of the cell before: entry 0 is 0, entry c + 1 the start of c.
-    cell_begins_.erase(cell_begins_.begin());
-    cell_begins_.push_back(reflex_count);
-}
-
 bool PolygonSplitter::blocks(std::uint32_t corner, std::uint32_t ear, bool touching_blocks) const {
-    if (clipped_[corner] || !reflex_[corner]) return false;
+    if (!reflex_[corner]) return false;
     const std::uint32_t before = previous_[ear], after = next_[ear];
     if (corner == before || corner == ear || corner == after) return false;
     const glm::dvec2 &a = points_[before], &b = points_[ear], &c = points_[after];
@@ -135,49 +103,24 @@ bool PolygonSplitter::blocks(std::uint32_t corner, std::uint32_t ear, bool touch
     if (p == a || p == c) return false;
     if (p == b) {
         // The boundary touches the ear's tip: it may come from within.
-        const auto within = [&](const glm::dvec2& q) {
-            return turn(a, b, q) > 0 && turn(b, c, q) > 0;
+        const auto depth = [&](const glm::dvec2& q) {
+            return std::min(turn(a, b, q), turn(b, c, q));
         };
-        return within(points_[previous_[corner]]) || within(points_[next_[corner]]);
+        const double in = depth(points_[previous_[corner]]), out = depth(points_[next_[corner]]);
+        return in > 0 || out > 0 || (in == 0 && out == 0);
     }
     const double least = std::min({turn(a, b, p), turn(b, c, p), turn(c, a, p)});
     return touching_blocks ? least >= 0 : least > 0;
 }
 
-// The first reflex corner that lies in the ear; none where the ear can be clipped.
+// A reflex corner that lies in the ear; none where the ear can be clipped.
 std::uint32_t PolygonSplitter::blocker_of(std::uint32_t ear, bool touching_blocks) {
-    if (cell_corners_.empty()) return none;
-    const std::array<glm::dvec2, 3> at{(points_[previous_[ear]] - grid_low_) * cells_per_unit_,
-                                       (points_[ear] - grid_low_) * cells_per_unit_,
-                                       (points_[next_[ear]] - grid_low_) * cells_per_unit_};
-    constexpr double margin = 1e-6;
-    const auto cell = [&](double place) {
-        return static_cast<std::uint32_t>(std::clamp(place, 0.0, grid_side_ - 1.0));
-    };
-    const std::uint32_t last_row = cell(std::max({at[0].y, at[1].y, at[2].y}) + margin);
-    for (std::uint32_t row = cell(std::min({at[0].y, at[1].y, at[2].y}) - margin); row <= last_row;
-         ++row) {
-        // What the edges cover of this row.
-        const double low = row - margin, high = row + 1 + margin;
-        double left = grid_side_, right = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            glm::dvec2 p = at[k], q = at[(k + 1) % 3];
-            if (p.y > q.y) std::swap(p, q);
-            if (q.y < low || p.y > high) continue;
-            const double slope = q.y > p.y ? (q.x - p.x) / (q.y - p.y) : 0;
-            const double from = p.y < low ? p.x + slope * (low - p.y) : p.x;
-            const double to = q.y > high ? p.x + slope * (high - p.y) : q.x;
-            left = std::min({left, from, to});
-            right = std::max({right, from, to});
-        }
-        const std::size_t first = std::size_t{row} * grid_side_ + cell(left - margin);
-        const std::size_t last = std::size_t{row} * grid_side_ + cell(right + margin);
-        const std::uint32_t begin = cell_begins_[first], end = cell_begins_[last + 1];
-        work_left_ -= std::min<std::uint64_t>(work_left_, 1 + end - begin);
-        for (std::uint32_t i = begin; i < end; ++i)
-            if (blocks(cell_corners_[i], ear, touching_blocks)) return cell_corners_[i];
-    }
-    return none;
+    std::uint64_t steps = 0;
+    const std::uint32_t blocker = reflex_corners_.find(
+        {points_[previous_[ear]], points_[ear], points_[next_[ear]]}, steps,
+        [&](std::uint32_t corner) { return blocks(corner, ear, touching_blocks); });
+    work_left_ -= std::min(work_left_, steps);
+    return blocker;
 }
 
 // Looks again at the corners that waited for this one.
@@ -198,6 +141,7 @@ void PolygonSplitter::clip(std::uint32_t ear, std::vector<Triangle>& triangles) 
     for (const std::uint32_t corner : {before, after}) {
         if (reflex_[corner] && turn_at(corner) > 0) {
             reflex_[corner] = false;
+            reflex_corners_.remove(corner);
             wake(corner);
         }
         if (!reflex_[corner]) queue_.push_back(corner);
@@ -214,7 +158,7 @@ bool PolygonSplitter::clip_ears(bool touching_blocks, std::vector<Triangle>& tri
         if (!clipped_[i] && !reflex_[i]) queue_.push_back(i);
     for (std::size_t at = 0; at < queue_.size() && left_ > 3 && work_left_ > 0; ++at) {
         const std::uint32_t ear = queue_[at];
-        if (clipped_[ear] || reflex_[ear]) continue;
+        if (clipped_[ear] || !(turn_at(ear) > 0)) continue;
         const std::uint32_t blocker = blocker_of(ear, touching_blocks);
         if (blocker == none) {
             clip(ear, triangles);
@@ -238,12 +182,12 @@ PolygonSplitter::Result PolygonSplitter::split(std::span<const glm::vec3> corner
     }
     if (!turns_once()) return Result::crossing;
     reflex_.resize(count);
-    bool convex = true;
+    std::vector<std::uint32_t> reflex;
     for (std::uint32_t i = 0; i < count; ++i) {
         reflex_[i] = !(turn_at(i) > 0);
-        convex = convex && !reflex_[i];
+        if (reflex_[i]) reflex.push_back(i);
     }
-    if (convex) {
+    if (reflex.empty()) {
         for (std::uint32_t i = 2; i < count; ++i)
             triangles.push_back({ring_[0], ring_[i - 1], ring_[i]});
         return Result::split;
@@ -251,7 +195,7 @@ PolygonSplitter::Result PolygonSplitter::split(std::span<const glm::vec3> corner
 
     clipped_.assign(count, false);
     left_ = count;
-    sort_reflex_into_grid();
+    reflex_corners_.build(points_, std::move(reflex));
     const std::size_t before = triangles.size();
     // Where the boundary touches itself, an ear may have a corner on its edge.
     const bool done = clip_ears(true, triangles) || clip_ears(false, triangles);

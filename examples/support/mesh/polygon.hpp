@@ -8,11 +8,13 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "point_tree.hpp"
+
 namespace support {
 
 /// Splits polygons into triangles by ear clipping (Meisters 1975). Signed areas decide, in the
 /// coordinate plane that the polygon's normal is nearest to. Only reflex corners can lie in an ear;
-/// a grid finds them. A corner that is no ear waits for the corner that lies in it, so that few
+/// a tree finds them. A corner that is no ear waits for the corner that lies in it, so that few
 /// corners are looked at twice.
 class PolygonSplitter {
 public:
@@ -36,7 +38,6 @@ private:
     bool make_ring(std::span<const glm::vec3> corners);
     bool project(std::span<const glm::vec3> corners);
     [[nodiscard]] bool turns_once() const;
-    void sort_reflex_into_grid();
     bool clip_ears(bool touching_blocks, std::vector<Triangle>& triangles);
     void clip(std::uint32_t ear, std::vector<Triangle>& triangles);
     void wake(std::uint32_t corner);
@@ -53,11 +54,7 @@ private:
     std::uint32_t left_ = 0;
     double area_ = 0;
 
-    // The reflex corners in a square grid, those of a cell one after another.
-    glm::dvec2 grid_low_{};
-    double cells_per_unit_ = 0;
-    std::uint32_t grid_side_ = 1;
-    std::vector<std::uint32_t> cell_begins_, cell_corners_;
+    PointTree reflex_corners_;
 
     // Corners to look at, and for each corner a list of those that wait for it.
     struct Waiting {
@@ -66,7 +63,7 @@ private:
     std::vector<std::uint32_t> queue_;
     std::vector<std::uint32_t> first_waiting_;
     std::vector<Waiting> waiting_;
-    std::uint64_t work_left_ = 300'000'000;  // cells and corners looked at: a second or so
+    std::uint64_t work_left_ = 100'000'000;  // nodes and corners of the tree
 };
 
 }  // namespace support

@@ -96,9 +96,8 @@ private:
 
     [[noreturn]] void fail(std::string_view word, const std::string& wanted) const {
         if (word.empty() && words_.at_end())
-            throw InputError(quoted("mesh", path_) + " is truncated: it ends after " +
-                             std::to_string(mesh_.face_ends.size()) + " facets, no " + wanted +
-                             " follows");
+            throw InputError(quoted("mesh", path_) + " is truncated: no " + wanted +
+                             " follows facet " + std::to_string(mesh_.face_ends.size()));
         throw InputError(quoted("mesh", path_) + " is damaged: line " +
                          std::to_string(words_.line()) + " has '" + printable(word) + "' where " +
                          wanted + " has to be");
