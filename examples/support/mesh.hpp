@@ -53,6 +53,7 @@ struct Mesh {
     std::uint64_t ignored_textures = 0;  ///< textures that the file names and that are not drawn
     UpAxis up = UpAxis::unknown;         ///< of the file, where it has a convention
     MeshDrops drops;
+    std::vector<std::string> notes;  ///< what else was left out, one line each, with its place
     /// The file ends within a line, so that it may have been cut off.
     bool ends_within_line = false;
 };

@@ -34,6 +34,7 @@ struct RawMesh {
     bool ends_within_line = false;       ///< as Mesh::ends_within_line
     std::uint64_t ignored_textures = 0;  ///< textures that the file names for what is drawn
     UpAxis up = UpAxis::unknown;         ///< of the format or the file, where it has one
+    std::vector<std::string> notes;      ///< what else was left out, one line each, with its place
 };
 
 /// A reader of one format. `text` is the whole file; `path` is for messages and for files beside it.
