@@ -134,6 +134,7 @@ Mesh clean_mesh(const Mesh& source) {
     mesh.materials = source.materials;
     mesh.ignored_textures = source.ignored_textures;
     mesh.up = source.up;
+    mesh.notes = source.notes;
     for (const glm::vec3& position : source.positions)
         if (!is_finite(position)) ++mesh.drops.nonfinite_vertices;
     for (std::size_t i = 0; i < source.triangles.size(); ++i) {

@@ -73,6 +73,7 @@ Mesh triangulate(RawMesh raw) {
     mesh.materials = std::move(raw.materials);
     mesh.ignored_textures = raw.ignored_textures;
     mesh.up = raw.up;
+    mesh.notes = std::move(raw.notes);
     mesh.ends_within_line = raw.ends_within_line;
     return mesh;
 }
