@@ -18,7 +18,7 @@ public:
         const std::string end = is_free ? " " : line_end;
         std::string text;
         const auto comment = [&] {
-            if (once_in(random_, 10)) text += "# 1 2 3" + line_end;
+            if (!is_free && once_in(random_, 10)) text += "# 1 2 3" + line_end;
         };
         comment();
         if (has_word)

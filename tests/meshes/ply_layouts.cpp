@@ -7,11 +7,6 @@
 namespace cellist::test {
 namespace {
 
-struct Value {
-    std::string type;
-    double value = 0;
-};
-
 // One row of an element: properties with their values. A list has the type of its count, too.
 struct Property {
     std::string name, type, count_type;
@@ -37,7 +32,7 @@ public:
         std::vector<Element> elements{vertices(mesh)};
         elements.push_back(mesh.has_triangles_only() && once_in(random_, 3) ? strips(mesh)
                                                                             : faces(mesh));
-        for (unsigned i = random_() % 3; i > 0; --i) elements.push_back(other(i));
+        for (unsigned i = below(random_, 3); i > 0; --i) elements.push_back(other(i));
         shuffle(random_, elements);
         std::string text = "ply" + line_end_;
         comment(text);
@@ -87,7 +82,7 @@ private:
 
     // Properties that mean nothing here.
     void add_others(Row& layout, const std::string& prefix) {
-        for (unsigned i = random_() % 3; i > 0; --i) {
+        for (unsigned i = below(random_, 3); i > 0; --i) {
             Property property{prefix + std::to_string(i),
                               once_in(random_, 2) ? integer_type() : real_type(),
                               "",
@@ -178,7 +173,7 @@ private:
         Element element{
             "camera" + std::to_string(number), {}, {{"other_first", real_type(), "", {}}}};
         add_others(element.layout, "other_");
-        for (unsigned i = random_() % 4; i > 0; --i) {
+        for (unsigned i = below(random_, 4); i > 0; --i) {
             Row row = element.layout;
             fill_others(row);
             element.rows.push_back(row);

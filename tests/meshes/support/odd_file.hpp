@@ -15,8 +15,13 @@ namespace cellist::test {
 
 using Random = std::mt19937;
 
+/// 0 to count - 1.
+inline unsigned below(Random& random, unsigned count) {
+    return static_cast<unsigned>(random() % count);
+}
+
 /// True once in `in` times.
-inline bool once_in(Random& random, unsigned in) { return random() % in == 0; }
+inline bool once_in(Random& random, unsigned in) { return below(random, in) == 0; }
 
 template <class T>
 const T& one_of(Random& random, const std::vector<T>& values) {
@@ -89,7 +94,7 @@ inline void check_flips(const Folder& folder, const OddFile& file, Random& rando
     const std::string name = "flipped-" + file.name;
     for (std::size_t i = 0; i < count; ++i) {
         std::string bytes = file.bytes;
-        for (unsigned flips = 1 + random() % 3; flips > 0; --flips)
+        for (unsigned flips = 1 + below(random, 3); flips > 0; --flips)
             bytes[random() % bytes.size()] = static_cast<char>(random() % 256);
         try {
             const support::Mesh mesh = support::load_mesh(folder.write(name, bytes));
