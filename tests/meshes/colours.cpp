@@ -32,6 +32,10 @@ TEST_CASE("bytes at the vertices of a PLY file are sRGB, the opacity is linear")
         CHECK(near(colour.b, 0));
         CHECK(near(colour.a, 0.2));
     }
+    // The file says all about the opacity.
+    REQUIRE(mesh.materials.size() == 1);
+    CHECK(mesh.materials[0].opacity == 1.0F);
+    CHECK(mesh.triangle_materials == std::vector<std::uint32_t>{0});
 }
 
 TEST_CASE("floats at the vertices of a PLY file are linear") {
@@ -43,6 +47,7 @@ TEST_CASE("floats at the vertices of a PLY file are linear") {
                "0.5 0.25 nan 0 0 0\n0.5 0.25 0 1 0 0\n0.5 0.25 -1 0 1 0\n3 0 1 2\n");
     REQUIRE(mesh.colours.size() == 3);
     for (const glm::vec4& colour : mesh.colours) CHECK(colour == glm::vec4(0.5, 0.25, 0, 1));
+    CHECK(mesh.materials.empty());
 }
 
 TEST_CASE("vertices of one place and two colours stay two, and share their normal") {

@@ -34,4 +34,13 @@ private:
     std::map<std::tuple<float, float, float, float>, std::uint32_t> materials_;
 };
 
+/// Says that the opacities of the vertices are all that the file says about opacity: a material for
+/// all faces with opacity 1.
+inline void take_opacity_of_vertices(RawMesh& mesh) {
+    MeshMaterial material;
+    material.opacity = 1.0F;
+    mesh.materials = {material};
+    mesh.face_materials.assign(mesh.face_ends.size(), 0);
+}
+
 }  // namespace support

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "colour_table.hpp"
 #include "input_error.hpp"
@@ -195,6 +194,8 @@ private:
 
     void use_colours() {
         for (const glm::vec4& raw : vertex_colours_) mesh_.colours.push_back(linear(raw));
+        if (!vertex_colours_.empty() && vertex_colours_[0].a != no_alpha)
+            take_opacity_of_vertices(mesh_);
         if (!has_face_colours_ || !vertex_colours_.empty()) return;
         ColourTable table(mesh_);
         std::uint32_t plain = RawMesh::no_vertex;

@@ -118,6 +118,8 @@ public:
             else
                 read_others(element);
         }
+        Row vertex_row(*header_.find("vertex"));
+        if (Colour(vertex_row).has_opacity()) take_opacity_of_vertices(mesh_);
         mesh_.drops.bytes_after_end = source_.bytes_left();
         return std::move(mesh_);
     }
