@@ -1,5 +1,4 @@
 // Polygons of any shape are split into triangles that cover just their inside.
-#include <chrono>
 #include <random>
 
 #include "mesh/polygon.hpp"
@@ -152,7 +151,7 @@ TEST_CASE("coordinates of 1e-30 and of 1e31 are safe") {
     }
 }
 
-TEST_CASE("a star of 600,000 corners ends, as does a spiral") {
+TEST_CASE("a star and a spiral of 600,000 corners are split") {
     constexpr int count = 600'000;
     std::vector<glm::vec3> star, spiral;
     for (int i = 0; i < count; ++i) {
@@ -164,8 +163,7 @@ TEST_CASE("a star of 600,000 corners ends, as does a spiral") {
         spiral.emplace_back(distance * std::cos(turns), distance * std::sin(turns), 0);
     }
     CHECK(split(star).triangles == count - 2);
-    const Split wound = split(spiral);
-    CHECK((wound.result == Result::split || wound.result == Result::too_long));
+    CHECK(split(spiral).triangles == count - 2);
 }
 
 TEST_CASE("what does not split is dropped whole and counted") {

@@ -19,11 +19,13 @@ public:
     void build(std::span<const glm::dvec2> points, std::vector<std::uint32_t> indices);
     void remove(std::uint32_t index);
 
-    /// The first index for which `wanted(index)` holds, among those in or near a counter-clockwise
-    /// triangle; `none` where there is no such point. Counts in `steps` what it looked at.
-    template <class Wanted>
-    [[nodiscard]] std::uint32_t find(const Triangle& triangle, std::uint64_t& steps,
-                                     const Wanted& wanted) const;
+    /// The index with the greatest `depth(index)` of at least 0 among the points in or near a
+    /// counter-clockwise triangle; `none` where there is none. The depth of a point in the triangle
+    /// has to be twice the area that it spans with the edge from the third corner to the first, or
+    /// -1 for points to be passed over. Counts in `steps` what it looked at.
+    template <class Depth>
+    [[nodiscard]] std::uint32_t deepest(const Triangle& triangle, std::uint64_t& steps,
+                                        const Depth& depth) const;
 
     static constexpr std::uint32_t none = 0xFFFFFFFF;
 
@@ -38,50 +40,59 @@ private:
         std::uint32_t held = 0;  // points not removed
     };
 
-    static bool misses(const Node& node, const Triangle& triangle);
+    /// The greatest depth that a point of the node's box may have in the triangle; -1 where the box
+    /// lies beside it.
+    static double bound(const Node& node, const Triangle& triangle);
 
     std::vector<Node> nodes_;
     std::vector<std::uint32_t> indices_;
     std::vector<std::uint32_t> leaf_of_;  // by index
 };
 
-// Whether the box lies on the outer side of one of the triangle's edges, or beside its box.
-inline bool PointTree::misses(const Node& node, const Triangle& t) {
+inline double PointTree::bound(const Node& node, const Triangle& t) {
     const glm::dvec2 low = glm::min(glm::min(t[0], t[1]), t[2]);
     const glm::dvec2 high = glm::max(glm::max(t[0], t[1]), t[2]);
     if (node.high.x < low.x || node.low.x > high.x || node.high.y < low.y || node.low.y > high.y)
-        return true;
+        return -1;
+    double most = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         const glm::dvec2& a = t[k];
         const glm::dvec2 along = t[(k + 1) % 3] - a;
         // The corner of the box that lies farthest to the left of the edge.
         const glm::dvec2 corner{along.y > 0 ? node.low.x : node.high.x,
                                 along.x > 0 ? node.high.y : node.low.y};
-        if (along.x * (corner.y - a.y) - along.y * (corner.x - a.x) < 0) return true;
+        most = along.x * (corner.y - a.y) - along.y * (corner.x - a.x);
+        if (most < 0) return -1;
     }
-    return false;
+    return most;
 }
 
-template <class Wanted>
-std::uint32_t PointTree::find(const Triangle& triangle, std::uint64_t& steps,
-                              const Wanted& wanted) const {
+template <class Depth>
+std::uint32_t PointTree::deepest(const Triangle& triangle, std::uint64_t& steps,
+                                 const Depth& depth) const {
     std::array<std::uint32_t, 64> stack{};
-    std::size_t depth = 0;
-    if (!nodes_.empty()) stack[depth++] = 0;
-    while (depth > 0) {
-        const Node& node = nodes_[stack[--depth]];
+    std::size_t height = 0;
+    if (!nodes_.empty()) stack[height++] = 0;
+    std::uint32_t found = none;
+    double most = -1;
+    while (height > 0) {
+        const Node& node = nodes_[stack[--height]];
         ++steps;
-        if (node.held == 0 || misses(node, triangle)) continue;
+        if (node.held == 0 || !(bound(node, triangle) > most)) continue;
         if (node.left != none) {
-            stack[depth++] = node.left;
-            stack[depth++] = node.left + 1;
+            stack[height++] = node.left;
+            stack[height++] = node.left + 1;
             continue;
         }
-        for (std::uint32_t i = node.begin; i < node.end; ++i)
-            if (wanted(indices_[i])) return indices_[i];
         steps += node.end - node.begin;
+        for (std::uint32_t i = node.begin; i < node.end; ++i) {
+            const double here = depth(indices_[i]);
+            if (here <= most) continue;
+            most = here;
+            found = indices_[i];
+        }
     }
-    return none;
+    return found;
 }
 
 }  // namespace support

@@ -67,12 +67,19 @@ bool PolygonSplitter::project(std::span<const glm::vec3> corners) {
     return true;
 }
 
+void PolygonSplitter::make_nodes() {
+    const auto count = static_cast<std::uint32_t>(points_.size());
+    nodes_.clear();
+    for (std::uint32_t i = 0; i < count; ++i)
+        nodes_.push_back({i, i == 0 ? count - 1 : i - 1, i + 1 == count ? 0 : i + 1, none});
+}
+
 // Whether the boundary turns round once, as that of every polygon without crossings does.
 bool PolygonSplitter::turns_once() const {
     double sum = 0;
-    for (std::uint32_t i = 0; i < points_.size(); ++i) {
-        const glm::dvec2 in = points_[i] - points_[previous_[i]];
-        const glm::dvec2 out = points_[next_[i]] - points_[i];
+    for (const Node& node : nodes_) {
+        const glm::dvec2 in = points_[node.corner] - place(node.previous);
+        const glm::dvec2 out = place(node.next) - points_[node.corner];
         const double cross = in.x * out.y - in.y * out.x, dot = glm::dot(in, out);
         if (cross == 0 && dot <= 0) return true;  // a spike: to the left or to the right
         sum += std::atan2(cross, dot);
@@ -80,133 +87,166 @@ bool PolygonSplitter::turns_once() const {
     return std::lround(sum / (2 * std::numbers::pi)) == 1;
 }
 
-double PolygonSplitter::turn_at(std::uint32_t corner) const {
-    return turn(points_[previous_[corner]], points_[corner], points_[next_[corner]]);
+double PolygonSplitter::turn_at(std::uint32_t node) const {
+    return turn(place(nodes_[node].previous), place(node), place(nodes_[node].next));
 }
 
-double PolygonSplitter::area_left() const {
-    std::uint32_t corner = 0;
-    while (clipped_[corner]) ++corner;
-    double sum = 0;
-    const std::uint32_t first = corner;
-    for (corner = next_[first]; next_[corner] != first; corner = next_[corner])
-        sum += turn(points_[first], points_[corner], points_[next_[corner]]);
-    return sum;
-}
-
-bool PolygonSplitter::blocks(std::uint32_t corner, std::uint32_t ear, bool touching_blocks) const {
-    if (!reflex_[corner]) return false;
-    const std::uint32_t before = previous_[ear], after = next_[ear];
-    if (corner == before || corner == ear || corner == after) return false;
-    const glm::dvec2 &a = points_[before], &b = points_[ear], &c = points_[after];
-    const glm::dvec2& p = points_[corner];
-    if (p == a || p == c) return false;
-    if (p == b) {
-        // The boundary touches the ear's tip: it may come from within.
-        const auto depth = [&](const glm::dvec2& q) {
-            return std::min(turn(a, b, q), turn(b, c, q));
-        };
-        const double in = depth(points_[previous_[corner]]), out = depth(points_[next_[corner]]);
-        return in > 0 || out > 0 || (in == 0 && out == 0);
+// The reflex node at a corner from which a diagonal to the ear runs inside; none where there is no
+// such node.
+std::uint32_t PolygonSplitter::node_facing(std::uint32_t corner, std::uint32_t ear) const {
+    const Node& tip = nodes_[ear];
+    const glm::dvec2& b = place(ear);
+    for (std::uint32_t n = corner; n != none; n = nodes_[n].same) {
+        const Node& node = nodes_[n];
+        if (node.clipped || !node.reflex || n == ear || n == tip.previous || n == tip.next)
+            continue;
+        const glm::dvec2 &before = place(node.previous), &here = place(n),
+                         &after = place(node.next);
+        if (here == b) {
+            // The boundary touches the ear's tip: it may come from within.
+            const auto depth = [&](const glm::dvec2& q) {
+                return std::min(turn(place(tip.previous), b, q), turn(b, place(tip.next), q));
+            };
+            const double in = depth(before), out = depth(after);
+            if (in > 0 || out > 0 || (in == 0 && out == 0)) return n;
+        } else if (!(turn(here, after, b) < 0 && turn(before, here, b) < 0)) {
+            return n;
+        }
     }
-    const double least = std::min({turn(a, b, p), turn(b, c, p), turn(c, a, p)});
-    return touching_blocks ? least >= 0 : least > 0;
+    return none;
 }
 
-// A reflex corner that lies in the ear; none where the ear can be clipped.
-std::uint32_t PolygonSplitter::blocker_of(std::uint32_t ear, bool touching_blocks) {
+// The node that lies deepest in the ear; none where the ear can be clipped.
+std::uint32_t PolygonSplitter::deepest_in(std::uint32_t ear) {
+    const glm::dvec2& a = place(nodes_[ear].previous);
+    const glm::dvec2& b = place(ear);
+    const glm::dvec2& c = place(nodes_[ear].next);
     std::uint64_t steps = 0;
-    const std::uint32_t blocker = reflex_corners_.find(
-        {points_[previous_[ear]], points_[ear], points_[next_[ear]]}, steps,
-        [&](std::uint32_t corner) { return blocks(corner, ear, touching_blocks); });
+    const std::uint32_t corner =
+        reflex_corners_.deepest({a, b, c}, steps, [&](std::uint32_t candidate) {
+            const glm::dvec2& p = points_[candidate];
+            if (p == a || p == c) return -1.0;
+            const double depth = turn(c, a, p);
+            if (!(depth >= 0) || turn(a, b, p) < 0 || turn(b, c, p) < 0) return -1.0;
+            return node_facing(candidate, ear) == none ? -1.0 : depth;
+        });
     work_left_ -= std::min(work_left_, steps);
-    return blocker;
+    return corner == none ? none : node_facing(corner, ear);
 }
 
-// Looks again at the corners that waited for this one.
-void PolygonSplitter::wake(std::uint32_t corner) {
-    for (std::uint32_t i = first_waiting_[corner]; i != none; i = waiting_[i].next)
-        queue_.push_back(waiting_[i].corner);
-    first_waiting_[corner] = none;
+std::uint32_t PolygonSplitter::add_node(std::uint32_t corner, std::uint32_t previous,
+                                        std::uint32_t next) {
+    const auto added = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.push_back({corner, previous, next, nodes_[corner].same});
+    nodes_[corner].same = added;
+    nodes_[previous].next = added;
+    nodes_[next].previous = added;
+    return added;
+}
+
+// After a change at this node: its angle became smaller.
+void PolygonSplitter::update(std::uint32_t n) {
+    Node& node = nodes_[n];
+    if (turn_at(n) > 0) {
+        if (node.reflex && --reflex_nodes_[node.corner] == 0) reflex_corners_.remove(node.corner);
+        node.reflex = false;
+        queue_.push_back(n);
+    }
 }
 
 void PolygonSplitter::clip(std::uint32_t ear, std::vector<Triangle>& triangles) {
-    const std::uint32_t before = previous_[ear], after = next_[ear];
-    triangles.push_back({ring_[before], ring_[ear], ring_[after]});
-    clipped_[ear] = true;
-    next_[before] = after;
-    previous_[after] = before;
-    --left_;
-    wake(ear);
-    for (const std::uint32_t corner : {before, after}) {
-        if (reflex_[corner] && turn_at(corner) > 0) {
-            reflex_[corner] = false;
-            reflex_corners_.remove(corner);
-            wake(corner);
-        }
-        if (!reflex_[corner]) queue_.push_back(corner);
+    const std::uint32_t before = nodes_[ear].previous, after = nodes_[ear].next;
+    triangles.push_back(
+        {ring_[nodes_[before].corner], ring_[nodes_[ear].corner], ring_[nodes_[after].corner]});
+    clipped_area_ += turn_at(ear);
+    nodes_[ear].clipped = true;
+    nodes_[before].next = after;
+    nodes_[after].previous = before;
+    if (nodes_[after].next == before) {
+        nodes_[before].clipped = nodes_[after].clipped = true;
+        return;
+    }
+    update(before);
+    update(after);
+}
+
+// Lets two nodes at one place go on along each other's way.
+void PolygonSplitter::exchange(std::uint32_t a, std::uint32_t b) {
+    std::swap(nodes_[a].next, nodes_[b].next);
+    nodes_[nodes_[a].next].previous = a;
+    nodes_[nodes_[b].next].previous = b;
+    update(a);
+    update(b);
+}
+
+// Cuts along the diagonal, or where the boundary touches itself: at the ear's tip, or on its edges.
+void PolygonSplitter::cut(std::uint32_t ear, std::uint32_t deepest) {
+    const std::uint32_t before = nodes_[ear].previous, after = nodes_[ear].next;
+    const glm::dvec2 p = place(deepest), a = place(before), b = place(ear), c = place(after);
+    const auto copy = [&](std::uint32_t node, std::uint32_t previous, std::uint32_t next) {
+        const std::uint32_t added = add_node(nodes_[node].corner, previous, next);
+        nodes_[added].reflex = true;
+        ++reflex_nodes_[nodes_[added].corner];
+        return added;
+    };
+    if (p == b) {
+        exchange(ear, deepest);
+    } else if (turn(a, b, p) == 0) {
+        exchange(copy(deepest, before, ear), deepest);
+    } else if (turn(b, c, p) == 0) {
+        exchange(copy(deepest, ear, after), deepest);
+    } else {
+        const std::uint32_t last = nodes_[deepest].previous;
+        const std::uint32_t tip = copy(ear, ear, after);
+        const std::uint32_t end = copy(deepest, last, tip);
+        nodes_[ear].next = deepest;
+        nodes_[deepest].previous = ear;
+        for (const std::uint32_t node : {ear, tip, deepest, end}) update(node);
     }
 }
 
-// Clips ears until three corners are left; false where there are none before that.
-bool PolygonSplitter::clip_ears(bool touching_blocks, std::vector<Triangle>& triangles) {
-    const auto count = static_cast<std::uint32_t>(points_.size());
-    queue_.clear();
-    first_waiting_.assign(count, none);
-    waiting_.clear();
-    for (std::uint32_t i = 0; i < count; ++i)
-        if (!clipped_[i] && !reflex_[i]) queue_.push_back(i);
-    for (std::size_t at = 0; at < queue_.size() && left_ > 3 && work_left_ > 0; ++at) {
+void PolygonSplitter::clip_and_cut(std::vector<Triangle>& triangles) {
+    const std::size_t most_nodes = 4 * points_.size();
+    for (std::size_t at = 0; at < queue_.size() && work_left_ > 0; ++at) {
         const std::uint32_t ear = queue_[at];
-        if (clipped_[ear] || !(turn_at(ear) > 0)) continue;
-        const std::uint32_t blocker = blocker_of(ear, touching_blocks);
-        if (blocker == none) {
+        if (nodes_[ear].clipped || !(turn_at(ear) > 0)) continue;
+        const std::uint32_t deepest = deepest_in(ear);
+        if (deepest == none) {
             clip(ear, triangles);
         } else {
-            waiting_.push_back({ear, first_waiting_[blocker]});
-            first_waiting_[blocker] = static_cast<std::uint32_t>(waiting_.size() - 1);
+            if (nodes_.size() > most_nodes || queue_.size() > 4 * most_nodes) return;
+            cut(ear, deepest);
         }
     }
-    return left_ == 3;
 }
 
 PolygonSplitter::Result PolygonSplitter::split(std::span<const glm::vec3> corners,
                                                std::vector<Triangle>& triangles) {
     if (!make_ring(corners) || !project(corners)) return Result::flat;
     const auto count = static_cast<std::uint32_t>(points_.size());
-    previous_.resize(count);
-    next_.resize(count);
-    for (std::uint32_t i = 0; i < count; ++i) {
-        previous_[i] = i == 0 ? count - 1 : i - 1;
-        next_[i] = i + 1 == count ? 0 : i + 1;
-    }
+    make_nodes();
     if (!turns_once()) return Result::crossing;
-    reflex_.resize(count);
+    queue_.clear();
+    reflex_nodes_.assign(count, 0);
     std::vector<std::uint32_t> reflex;
     for (std::uint32_t i = 0; i < count; ++i) {
-        reflex_[i] = !(turn_at(i) > 0);
-        if (reflex_[i]) reflex.push_back(i);
+        nodes_[i].reflex = !(turn_at(i) > 0);
+        reflex_nodes_[i] = nodes_[i].reflex ? 1 : 0;
+        if (nodes_[i].reflex)
+            reflex.push_back(i);
+        else
+            queue_.push_back(i);
     }
     if (reflex.empty()) {
         for (std::uint32_t i = 2; i < count; ++i)
             triangles.push_back({ring_[0], ring_[i - 1], ring_[i]});
         return Result::split;
     }
-
-    clipped_.assign(count, false);
-    left_ = count;
     reflex_corners_.build(points_, std::move(reflex));
     const std::size_t before = triangles.size();
-    // Where the boundary touches itself, an ear may have a corner on its edge.
-    const bool done = clip_ears(true, triangles) || clip_ears(false, triangles);
-    const double rest = area_left();
-    if (done && rest > 0) {
-        std::uint32_t corner = 0;
-        while (clipped_[corner]) ++corner;
-        triangles.push_back({ring_[previous_[corner]], ring_[corner], ring_[next_[corner]]});
-        return Result::split;
-    }
-    if (std::abs(rest) <= 1e-12 * area_) return Result::split;
+    clipped_area_ = 0;
+    clip_and_cut(triangles);
+    if (std::abs(clipped_area_ - area_) <= 1e-9 * area_) return Result::split;
     triangles.resize(before);
     return work_left_ == 0 ? Result::too_long : Result::crossing;
 }

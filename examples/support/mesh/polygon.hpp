@@ -12,10 +12,11 @@
 
 namespace support {
 
-/// Splits polygons into triangles by ear clipping (Meisters 1975). Signed areas decide, in the
-/// coordinate plane that the polygon's normal is nearest to. Only reflex corners can lie in an ear;
-/// a tree finds them. A corner that is no ear waits for the corner that lies in it, so that few
-/// corners are looked at twice.
+/// Splits polygons into triangles: clips a convex corner where no other corner lies in its triangle,
+/// else cuts the polygon in two along the diagonal from it to the deepest of these (Meisters 1975).
+/// Signed areas decide, in the coordinate plane that the polygon's normal is nearest to. Only reflex
+/// corners can be the deepest; a tree finds them. Each search gives a triangle or a diagonal, so
+/// their number is linear.
 class PolygonSplitter {
 public:
     enum class Result {
@@ -35,34 +36,40 @@ public:
 private:
     static constexpr std::uint32_t none = 0xFFFFFFFF;
 
+    // A place on the boundary. Cuts put several at one corner.
+    struct Node {
+        std::uint32_t corner;  // of ring_ and points_
+        std::uint32_t previous, next;
+        std::uint32_t same;  // the next node at this corner
+        bool clipped = false, reflex = false;
+    };
+
     bool make_ring(std::span<const glm::vec3> corners);
     bool project(std::span<const glm::vec3> corners);
+    void make_nodes();
     [[nodiscard]] bool turns_once() const;
-    bool clip_ears(bool touching_blocks, std::vector<Triangle>& triangles);
+    void clip_and_cut(std::vector<Triangle>& triangles);
     void clip(std::uint32_t ear, std::vector<Triangle>& triangles);
-    void wake(std::uint32_t corner);
-    [[nodiscard]] double turn_at(std::uint32_t corner) const;
-    [[nodiscard]] double area_left() const;
-    [[nodiscard]] std::uint32_t blocker_of(std::uint32_t ear, bool touching_blocks);
-    [[nodiscard]] bool blocks(std::uint32_t corner, std::uint32_t ear, bool touching_blocks) const;
+    void cut(std::uint32_t ear, std::uint32_t deepest);
+    void exchange(std::uint32_t a, std::uint32_t b);
+    std::uint32_t add_node(std::uint32_t corner, std::uint32_t previous, std::uint32_t next);
+    void update(std::uint32_t node);
+    [[nodiscard]] const glm::dvec2& place(std::uint32_t node) const {
+        return points_[nodes_[node].corner];
+    }
+    [[nodiscard]] double turn_at(std::uint32_t node) const;
+    [[nodiscard]] std::uint32_t deepest_in(std::uint32_t ear);
+    [[nodiscard]] std::uint32_t node_facing(std::uint32_t corner, std::uint32_t ear) const;
 
-    // The corners that are left, as a ring: index into the polygon, place in the plane, neighbours.
+    // The corners that count, and their places in the plane.
     std::vector<std::uint32_t> ring_;
     std::vector<glm::dvec2> points_;
-    std::vector<std::uint32_t> previous_, next_;
-    std::vector<bool> clipped_, reflex_;
-    std::uint32_t left_ = 0;
-    double area_ = 0;
+    double area_ = 0, clipped_area_ = 0;  // twice these
 
+    std::vector<Node> nodes_;
+    std::vector<std::uint32_t> reflex_nodes_;  // number of each corner
     PointTree reflex_corners_;
-
-    // Corners to look at, and for each corner a list of those that wait for it.
-    struct Waiting {
-        std::uint32_t corner, next;
-    };
-    std::vector<std::uint32_t> queue_;
-    std::vector<std::uint32_t> first_waiting_;
-    std::vector<Waiting> waiting_;
+    std::vector<std::uint32_t> queue_;       // nodes to look at
     std::uint64_t work_left_ = 100'000'000;  // nodes and corners of the tree
 };
 
