@@ -15,20 +15,6 @@
 namespace oit {
 namespace {
 
-std::string dropped_text(const support::MeshDrops& drops) {
-    std::string text;
-    const auto add = [&](std::uint64_t count, const std::string& what) {
-        if (count > 0) text += (text.empty() ? "" : ", ") + grouped(count) + " " + what;
-    };
-    add(drops.nonfinite_triangles, "with NaN or infinite vertices");
-    add(drops.out_of_range_triangles, "with indices out of range");
-    add(drops.degenerate_triangles, "degenerate");
-    add(drops.unsplit_polygons, "polygons that cross themselves or are too intricate");
-    add(drops.points_and_lines, "points or lines");
-    add(drops.bytes_after_end, "bytes after the end");
-    return text.empty() ? "" : " (dropped: " + text + ")";
-}
-
 nlohmann::ordered_json finite_or_null(double value) {
     return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
@@ -89,7 +75,7 @@ void print_method(const Report& report, const Line& line) {
 }
 
 void print_fragments(const Report& report, const Line& line) {
-    line("triangles") << grouped(report.triangles) << dropped_text(report.drops) << '\n';
+    line("triangles") << grouped(report.triangles) << support::dropped_text(report.drops) << '\n';
     if (!report.lengths) {
         // A choice says how many there are.
         if (!report.choice)

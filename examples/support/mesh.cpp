@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <string>
 #include <unordered_map>
 
 #include <glm/common.hpp>
@@ -126,6 +127,20 @@ void merge_vertices(const Mesh& source, Mesh& mesh) {
 }
 
 }  // namespace
+
+std::string dropped_text(const MeshDrops& drops) {
+    std::string text;
+    const auto add = [&](std::uint64_t count, const std::string& what) {
+        if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + what;
+    };
+    add(drops.nonfinite_triangles, "with NaN or infinite vertices");
+    add(drops.out_of_range_triangles, "with indices out of range");
+    add(drops.degenerate_triangles, "degenerate");
+    add(drops.unsplit_polygons, "polygons that cross themselves or are too intricate");
+    add(drops.points_and_lines, "points or lines");
+    add(drops.bytes_after_end, "bytes after the end");
+    return text.empty() ? "" : " (dropped: " + text + ")";
+}
 
 Mesh clean_mesh(const Mesh& source) {
     Mesh mesh;

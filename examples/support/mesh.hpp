@@ -29,6 +29,9 @@ struct MeshDrops {
     }
 };
 
+/// " (dropped: 3 degenerate, 1 points or lines)"; empty where nothing was.
+[[nodiscard]] std::string dropped_text(const MeshDrops& drops);
+
 /// The axis that points up in a file.
 enum class UpAxis { unknown, x, y, z };
 

@@ -43,7 +43,7 @@ Options parse_options(int count, const char* const* arguments) {
                            seed = "1";
     CLI::App app{"Puts the triangles of a mesh into a 3D grid and shoots segments at them.",
                  "triangle_grid"};
-    app.add_option("mesh", mesh, "mesh that Assimp reads: OBJ, PLY, STL, ...; else a knot")
+    app.add_option("mesh", mesh, "mesh to read: PLY, OBJ, glTF, STL, OFF, ...; else a knot")
         ->type_name("MESH");
     app.add_option("--grid", grid, "cells along the longest side of the mesh")
         ->type_name("N")
@@ -134,6 +134,12 @@ bool run(const Options& options) {
                 support::to_string(options.storage).c_str(),
                 static_cast<unsigned long long>(report.stored),
                 static_cast<double>(grid.entries().pool_bytes()) * 1e-6);
+    if (!options.mesh.empty())
+        std::printf("mesh        %zu triangles%s\n", mesh.triangles.size(),
+                    support::dropped_text(mesh.drops).c_str());
+    for (const std::string& note : mesh.notes) std::printf("note        %s\n", note.c_str());
+    if (mesh.ends_within_line)
+        std::printf("note        the mesh file ends within a line: it may have been cut off\n");
     std::printf("segments    %zu, %lld meet a triangle\n", segments.size(),
                 static_cast<long long>(std::count(hits.begin(), hits.end(), cl_uint{1})));
     std::printf("time        build %.1f ms, segments %.1f ms (%.2f million/s)\n", build_ms, ask_ms,

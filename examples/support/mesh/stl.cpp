@@ -35,8 +35,8 @@ bool is_text(std::string_view text) {
     (void)words.rest_of_line();
     const std::string_view next = words.next_word();
     if (same_word(next, "facet") || same_word(next, "endsolid")) return true;
-    return text.substr(0, header_bytes).find('\0') == std::string_view::npos &&
-           (text.size() < header_bytes || next.empty());
+    // The number of triangles of a binary file has a byte of 0.
+    return text.substr(0, header_bytes).find('\0') == std::string_view::npos;
 }
 
 void add_corner(RawMesh& mesh, const glm::vec3& position, const glm::vec3& normal) {
