@@ -222,10 +222,10 @@ void PolygonSplitter::clip_and_cut(std::vector<Triangle>& triangles) {
 
 PolygonSplitter::Result PolygonSplitter::split(std::span<const glm::vec3> corners,
                                                std::vector<Triangle>& triangles) {
+    if (corners.size() > work_left_ / 16) return Result::too_long;
     if (!make_ring(corners) || !project(corners)) return Result::flat;
     const auto count = static_cast<std::uint32_t>(points_.size());
     make_nodes();
-    if (!turns_once()) return Result::crossing;
     queue_.clear();
     reflex_nodes_.assign(count, 0);
     std::vector<std::uint32_t> reflex;
@@ -237,6 +237,9 @@ PolygonSplitter::Result PolygonSplitter::split(std::span<const glm::vec3> corner
         else
             queue_.push_back(i);
     }
+    // Four turns to the left are one round.
+    const bool is_convex_quad = count == 4 && reflex.empty();
+    if (!is_convex_quad && !turns_once()) return Result::crossing;
     if (reflex.empty()) {
         for (std::uint32_t i = 2; i < count; ++i)
             triangles.push_back({ring_[0], ring_[i - 1], ring_[i]});
