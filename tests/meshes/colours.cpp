@@ -13,7 +13,7 @@ Mesh loaded(const std::string& name, const std::string& text) {
     return support::load_mesh(folder.write(name, text));
 }
 
-bool near(double a, double b) { return std::abs(a - b) < 1e-6; }
+bool near(float a, double b) { return std::abs(static_cast<double>(a) - b) < 1e-6; }
 
 // 128 / 255 by the formula of IEC 61966-2-1.
 constexpr double half_srgb = 0.21586050011389926;

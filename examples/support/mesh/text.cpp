@@ -48,7 +48,7 @@ std::optional<std::int64_t> parse_integer(std::string_view word) {
 }
 
 float to_float(double value) {
-    if (std::abs(value) > std::numeric_limits<float>::max())
+    if (std::abs(value) > static_cast<double>(std::numeric_limits<float>::max()))
         return value > 0 ? std::numeric_limits<float>::infinity()
                          : -std::numeric_limits<float>::infinity();
     return static_cast<float>(value);
