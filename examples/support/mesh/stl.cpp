@@ -95,7 +95,7 @@ private:
     }
 
     [[noreturn]] void fail(std::string_view word, const std::string& wanted) const {
-        if (word.empty() && words_.at_end())
+        if (words_.at_end())
             throw InputError(quoted("mesh", path_) + " is truncated: no " + wanted +
                              " follows facet " + std::to_string(mesh_.face_ends.size()));
         throw InputError(quoted("mesh", path_) + " is damaged: line " +
