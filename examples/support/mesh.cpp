@@ -168,8 +168,9 @@ Mesh clean_mesh(const Mesh& source) {
         }
     }
     merge_vertices(source, mesh);
-    complete_normals(mesh);
+    // Only normals from elsewhere turn triangles: those made here follow them.
     turn_towards_normals(mesh);
+    complete_normals(mesh);
     // Coincident triangles then start at the same corner, whatever their winding, and the
     // rasteriser gives them equal depths to the last bit.
     for (auto& t : mesh.triangles)

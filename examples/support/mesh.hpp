@@ -42,8 +42,9 @@ struct MeshMaterial {
     std::optional<float> opacity;          ///< 0 to 1; nothing where the file does not say
 };
 
-/// Indexed triangles with a normal at each vertex. Normals have length 1 and lie on the side from
-/// which a triangle's corners run counter-clockwise.
+/// Indexed triangles with a normal at each vertex. Normals have length 1. The mean of a triangle's
+/// lies on the side from which its corners run counter-clockwise, but for normals that clean_mesh()
+/// made at sharp edges.
 struct Mesh {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;
@@ -64,7 +65,7 @@ struct Mesh {
 /// Loads every mesh of a file: PLY, OBJ, glTF and GLB, OFF, STL, and what else Assimp reads. Reads
 /// regular files of up to 1 GiB. Polygons are triangulated, also concave ones. Vertices with equal
 /// position, normal and colour are merged, and unused ones left out; smooth normals are made where
-/// the file has none. Triangles that disagree with their normals are turned round. Throws InputError
+/// the file has none. Triangles that disagree with the file's normals are turned round. Throws InputError
 /// in one line that names the file, and the place in it, where the file is missing, no regular file,
 /// unreadable, empty, damaged or truncated, or has no triangle that can be drawn.
 [[nodiscard]] Mesh load_mesh(const std::filesystem::path& path);

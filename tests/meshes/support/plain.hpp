@@ -128,7 +128,7 @@ inline bool lies_in(const glm::dvec3& point, const std::vector<glm::dvec3>& corn
 }
 
 /// Says how a loaded mesh differs from the plain one; empty where it does not. Triangles are
-/// compared with their winding. Polygons, whose vertices may have normals from all sides, have to be covered by triangles of their area that lie
+/// compared with their winding. Polygons have to be covered by triangles of their area that lie
 /// within them.
 inline std::string difference(const support::Mesh& loaded, const PlainMesh& plain) {
     if (plain.has_triangles_only()) {
@@ -159,6 +159,8 @@ inline std::string difference(const support::Mesh& loaded, const PlainMesh& plai
                 });
             if (!has_corners || !lies_in(centre, face)) continue;
             found = true;
+            if (glm::dot(area_vector(corners), area_vector(face)) <= 0)
+                return "a triangle turned round";
             covered[f] += glm::length(area_vector(corners));
         }
         if (!found) return "a triangle outside of all polygons";
