@@ -20,6 +20,7 @@ public:
         const auto comment = [&] {
             if (!is_free && once_in(random_, 10)) text += "# 1 2 3" + line_end;
         };
+        if (once_in(random_, 10)) text += "\xEF\xBB\xBF";
         comment();
         if (has_word)
             text += std::string(has_texture ? "ST" : "") + (has_colour ? "C" : "") +

@@ -34,7 +34,7 @@ public:
                                                                             : faces(mesh));
         for (unsigned i = below(random_, 3); i > 0; --i) elements.push_back(other(i));
         shuffle(random_, elements);
-        std::string text = "ply" + line_end_;
+        std::string text = (once_in(random_, 10) ? "\xEF\xBB\xBFply" : "ply") + line_end_;
         comment(text);
         text += "format " + format + " 1.0" + line_end_;
         for (const Element& element : elements) {

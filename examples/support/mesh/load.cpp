@@ -43,6 +43,8 @@ Mesh load_mesh(const std::filesystem::path& path) {
     const std::string name = quoted("mesh", path);
     try {
         std::string text = read_file("mesh", path, limit_bytes);
+        // A mark that some editors put before text in UTF-8.
+        if (text.starts_with("\xEF\xBB\xBF") && !is_binary_stl(text)) text.erase(0, 3);
         RawMesh raw = reader_of(path, text)(path, text);
         std::string().swap(text);
         if (raw.positions.size() >= RawMesh::no_vertex || raw.corners.size() > RawMesh::no_vertex)
