@@ -93,10 +93,12 @@ double PolygonSplitter::turn_at(std::uint32_t node) const {
 
 // The reflex node at a corner from which a diagonal to the ear runs inside; none where there is no
 // such node.
-std::uint32_t PolygonSplitter::node_facing(std::uint32_t corner, std::uint32_t ear) const {
+std::uint32_t PolygonSplitter::node_facing(std::uint32_t corner, std::uint32_t ear,
+                                           std::uint64_t& steps) const {
     const Node& tip = nodes_[ear];
     const glm::dvec2& b = place(ear);
     for (std::uint32_t n = corner; n != none; n = nodes_[n].same) {
+        ++steps;
         const Node& node = nodes_[n];
         if (node.clipped || !node.reflex || n == ear || n == tip.previous || n == tip.next)
             continue;
@@ -121,17 +123,18 @@ std::uint32_t PolygonSplitter::deepest_in(std::uint32_t ear) {
     const glm::dvec2& a = place(nodes_[ear].previous);
     const glm::dvec2& b = place(ear);
     const glm::dvec2& c = place(nodes_[ear].next);
-    std::uint64_t steps = 0;
+    std::uint64_t steps = 0;  // of the tree, and at corners with several nodes
     const std::uint32_t corner =
         reflex_corners_.deepest({a, b, c}, steps, [&](std::uint32_t candidate) {
             const glm::dvec2& p = points_[candidate];
             if (p == a || p == c) return -1.0;
             const double depth = turn(c, a, p);
             if (!(depth >= 0) || turn(a, b, p) < 0 || turn(b, c, p) < 0) return -1.0;
-            return node_facing(candidate, ear) == none ? -1.0 : depth;
+            return node_facing(candidate, ear, steps) == none ? -1.0 : depth;
         });
+    const std::uint32_t node = corner == none ? none : node_facing(corner, ear, steps);
     work_left_ -= std::min(work_left_, steps);
-    return corner == none ? none : node_facing(corner, ear);
+    return node;
 }
 
 std::uint32_t PolygonSplitter::add_node(std::uint32_t corner, std::uint32_t previous,

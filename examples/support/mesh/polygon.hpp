@@ -59,7 +59,8 @@ private:
     }
     [[nodiscard]] double turn_at(std::uint32_t node) const;
     [[nodiscard]] std::uint32_t deepest_in(std::uint32_t ear);
-    [[nodiscard]] std::uint32_t node_facing(std::uint32_t corner, std::uint32_t ear) const;
+    [[nodiscard]] std::uint32_t node_facing(std::uint32_t corner, std::uint32_t ear,
+                                            std::uint64_t& steps) const;
 
     // The corners that count, and their places in the plane.
     std::vector<std::uint32_t> ring_;
