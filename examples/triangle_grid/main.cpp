@@ -135,7 +135,7 @@ bool run(const Options& options) {
                 static_cast<unsigned long long>(report.stored),
                 static_cast<double>(grid.entries().pool_bytes()) * 1e-6);
     if (!options.mesh.empty())
-        std::printf("mesh        %zu triangles%s\n", mesh.triangles.size(),
+        std::printf("mesh        triangles: %zu%s\n", mesh.triangles.size(),
                     support::dropped_text(mesh.drops).c_str());
     for (const std::string& note : mesh.notes) std::printf("note        %s\n", note.c_str());
     if (mesh.ends_within_line)
