@@ -1,11 +1,11 @@
 // The length of every list.
 //
-//   lengths   at + cells   out, from `at` on: nodes of the cell
+//   lengths   cells   out: nodes of the cell
 //
 // One work-item a cell; the range is padded to whole work-groups.
 #include <cellist/lists.clh>
 
-kernel void cellist_lengths(CELLIST_LISTS(CELLIST_RECORD, lists), global uint* lengths, uint at) {
+kernel void cellist_lengths(CELLIST_LISTS(CELLIST_RECORD, lists), global uint* lengths) {
     const uint cell = get_global_id(0);
     if (cell >= cellist_cells(lists)) return;
     uint length = 0;
@@ -13,5 +13,5 @@ kernel void cellist_lengths(CELLIST_LISTS(CELLIST_RECORD, lists), global uint* l
     cellist_for_each(lists, cell, node) {
         if (++length == lists_view.capacity_nodes) break;
     }
-    lengths[(ulong)at + cell] = length;
+    lengths[cell] = length;
 }

@@ -1,48 +1,64 @@
 // Sums and prefix sums of the counts of all cells, in blocks.
 //
-//   heads     the counts of the cells, from counts_at on; cellist_block_offsets writes the offsets
-//             of the lists to its begin: cells + 1, none over `capacity`
+//   heads     the counts of the cells, from counts_at on
+//   offsets   cells + 1   out: where the lists begin that have these counts, none over `capacity`. May be
+//                         the heads, even in the place of the counts
 //   sums      blocks    the sum of min(count, limit) over a block, in 64 bits; then, in its place, the
 //                       sum of all blocks before it
+//   hashes    blocks    the sum of a hash of each cell and its count
 //   maxima    blocks    the largest count of a block
-//   totals    2         out: the sum of min(count, limit) over all cells, the largest count
+//   totals    3         out: the sum of min(count, limit) over all cells, the largest count, the sum
+//                       of the hashes
 //
 // A work-group of CELLIST_SCAN_GROUP items has a block of CELLIST_SCAN_GROUP * CELLIST_SCAN_CELLS
 // cells, and there are cells / that + 1 blocks. One work-group sums up the blocks. Barriers stand in
 // uniform control flow.
 
-// Work-items of a group; a power of two. As in cell_scan.cpp.
-#define CELLIST_SCAN_GROUP 256
-// Cells of a work-item.
+// The host defines CELLIST_SCAN_GROUP, the work-items of a group; a power of two.
+// Cells of a work-item. As in cell_scan.cpp.
 #define CELLIST_SCAN_CELLS 16
+
+// Tells where a count has gone to another cell (the finaliser of MurmurHash3). Empty cells add nothing.
+static inline ulong cellist_count_hash(uint cell, uint count) {
+    ulong hash = ((ulong)cell << 32) | count;
+    hash = (hash ^ hash >> 33) * 0xFF51AFD7ED558CCDul;
+    hash = (hash ^ hash >> 33) * 0xC4CEB9FE1A85EC53ul;
+    return hash ^ hash >> 33;
+}
 
 kernel __attribute__((reqd_work_group_size(CELLIST_SCAN_GROUP, 1, 1))) void cellist_block_sums(
     global const uint* heads, uint counts_at, uint cells, uint limit, global ulong* sums,
-    global uint* maxima) {
+    global ulong* hashes, global uint* maxima) {
     local ulong group_sums[CELLIST_SCAN_GROUP];
+    local ulong group_hashes[CELLIST_SCAN_GROUP];
     local uint group_maxima[CELLIST_SCAN_GROUP];
     const uint item = get_local_id(0);
     const ulong first = (ulong)get_group_id(0) * (CELLIST_SCAN_GROUP * CELLIST_SCAN_CELLS) + item;
     ulong sum = 0;
+    ulong hash = 0;
     uint maximum = 0;
     for (uint i = 0; i < CELLIST_SCAN_CELLS; ++i) {
         const ulong cell = first + i * CELLIST_SCAN_GROUP;
         const uint count = cell < cells ? heads[counts_at + cell] : 0;
         sum += min(count, limit);
+        if (count != 0) hash += cellist_count_hash((uint)cell, count);
         maximum = max(maximum, count);
     }
     group_sums[item] = sum;
+    group_hashes[item] = hash;
     group_maxima[item] = maximum;
     barrier(CLK_LOCAL_MEM_FENCE);
     for (uint width = CELLIST_SCAN_GROUP / 2; width > 0; width /= 2) {
         if (item < width) {
             group_sums[item] += group_sums[item + width];
+            group_hashes[item] += group_hashes[item + width];
             group_maxima[item] = max(group_maxima[item], group_maxima[item + width]);
         }
         barrier(CLK_LOCAL_MEM_FENCE);
     }
     if (item == 0) {
         sums[get_group_id(0)] = group_sums[0];
+        hashes[get_group_id(0)] = group_hashes[0];
         maxima[get_group_id(0)] = group_maxima[0];
     }
 }
@@ -63,11 +79,14 @@ static inline ulong cellist_group_scan(local ulong* sums, ulong value) {
 
 // One work-group.
 kernel __attribute__((reqd_work_group_size(CELLIST_SCAN_GROUP, 1, 1))) void cellist_block_starts(
-    global ulong* sums, global const uint* maxima, uint blocks, global ulong* totals) {
+    global ulong* sums, global const ulong* hashes, global const uint* maxima, uint blocks,
+    global ulong* totals) {
     local ulong group_sums[CELLIST_SCAN_GROUP];
+    local ulong group_hashes[CELLIST_SCAN_GROUP];
     local uint group_maxima[CELLIST_SCAN_GROUP];
     const uint item = get_local_id(0);
     ulong before = 0;
+    ulong hash = 0;
     uint maximum = 0;
     for (uint first = 0; first < blocks; first += CELLIST_SCAN_GROUP) {
         const uint block = first + item;
@@ -75,21 +94,28 @@ kernel __attribute__((reqd_work_group_size(CELLIST_SCAN_GROUP, 1, 1))) void cell
         const ulong up_to = cellist_group_scan(group_sums, own);
         if (block < blocks) {
             sums[block] = before + up_to - own;
+            hash += hashes[block];
             maximum = max(maximum, maxima[block]);
         }
         before += group_sums[CELLIST_SCAN_GROUP - 1];
         barrier(CLK_LOCAL_MEM_FENCE);
     }
+    group_hashes[item] = hash;
     group_maxima[item] = maximum;
     barrier(CLK_LOCAL_MEM_FENCE);
     if (item != 0) return;
-    for (uint i = 1; i < CELLIST_SCAN_GROUP; ++i) maximum = max(maximum, group_maxima[i]);
+    for (uint i = 1; i < CELLIST_SCAN_GROUP; ++i) {
+        hash += group_hashes[i];
+        maximum = max(maximum, group_maxima[i]);
+    }
     totals[0] = before;
     totals[1] = maximum;
+    totals[2] = hash;
 }
 
 kernel __attribute__((reqd_work_group_size(CELLIST_SCAN_GROUP, 1, 1))) void cellist_block_offsets(
-    global uint* heads, uint counts_at, uint cells, global const ulong* sums, uint capacity) {
+    global const uint* heads, uint counts_at, uint cells, global const ulong* sums, uint capacity,
+    global uint* offsets) {
     local ulong group_sums[CELLIST_SCAN_GROUP];
     const uint item = get_local_id(0);
     const ulong first = ((ulong)get_group_id(0) * CELLIST_SCAN_GROUP + item) * CELLIST_SCAN_CELLS;
@@ -98,9 +124,10 @@ kernel __attribute__((reqd_work_group_size(CELLIST_SCAN_GROUP, 1, 1))) void cell
         if (first + i < cells) sum += heads[counts_at + first + i];
     ulong at = sums[get_group_id(0)] + cellist_group_scan(group_sums, sum) - sum;
     for (uint i = 0; i < CELLIST_SCAN_CELLS; ++i) {
-        // The cell behind the last takes the end of the last list.
+        // The cell after the last takes the end of the last list.
         if (first + i > cells) break;
-        heads[first + i] = (uint)min(at, (ulong)capacity);
-        if (first + i < cells) at += heads[counts_at + first + i];
+        const uint count = first + i < cells ? heads[counts_at + first + i] : 0;
+        offsets[first + i] = (uint)min(at, (ulong)capacity);
+        at += count;
     }
 }

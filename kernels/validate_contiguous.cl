@@ -1,13 +1,15 @@
-// Checks the offsets of lists that lie behind one another: that they ascend inside the pool, and that
-// every list was filled.
+// Checks the offsets of lists that lie one after the other: that they ascend inside the pool, that they are
+// those that the counts give, and that every list was filled.
 //
-//   findings   1   in: 0; out: lists that end before they begin or
-//                  behind the pool, nodes that no record was written to, nodes of all lists
+//   offsets    cells + 1   where lists begin that have the counts; the heads, if that is not asked
+//   findings   1   in: 0; out: lists that begin or end elsewhere, before they begin, or after the pool;
+//                  nodes that no record was written to, nodes of all lists
 //
 // One work-item a cell; the range is padded to whole work-groups.
 #include <cellist/lists.clh>
 
 kernel void cellist_validate_contiguous(CELLIST_LISTS(CELLIST_RECORD, lists),
+                                        global const uint* offsets,
                                         volatile global cellist_findings* findings) {
     const uint cell = get_global_id(0);
     if (cell >= cellist_cells(lists)) return;
@@ -15,11 +17,13 @@ kernel void cellist_validate_contiguous(CELLIST_LISTS(CELLIST_RECORD, lists),
     const uint end = lists_heads[(ulong)cell + 1];
     const uint inserted = lists_heads[(ulong)lists_view.cells + 1 + cell];
     // The first list begins with the pool.
-    if (begin > end || end > lists_view.capacity_nodes || (cell == 0 && begin != 0)) {
+    const int is_possible =
+        begin <= end && end <= lists_view.capacity_nodes && (cell > 0 || begin == 0);
+    if (!is_possible || begin != offsets[cell] || end != offsets[(ulong)cell + 1]) {
         atomic_inc(&findings->broken);
         atomic_max(&findings->bad_cell_from_end, CELLIST_NONE - cell);
-        return;
     }
+    if (!is_possible) return;
     const uint length = end - begin;
     if (length) atomic_add(&findings->nodes, length);
     // A list counts on past its end: those records were dropped.

@@ -116,7 +116,7 @@ BuildReport ListsCore::measure(const std::function<void()>& insert, Trial& trial
 
 void ListsCore::measure_walk(Trial& trial) const {
     std::array<cl_uint, 2> found{};
-    Memory findings(device_, found.size(), sizeof(cl_uint), "findings");
+    Memory findings(device_.state(), found.size(), sizeof(cl_uint), "findings");
     findings.write(found.data(), sizeof found);
     Arguments arguments;
     add_to(arguments);

@@ -12,25 +12,25 @@ namespace cellist::detail {
 /// words of a head buffer, from `counts_at` on. Nothing blocks.
 class CellScan {
 public:
-    CellScan(std::shared_ptr<DeviceState> device, std::uint64_t cells, cl_uint counts_at);
+    CellScan(const MemoryOwner& device, std::uint64_t cells, cl_uint counts_at);
 
     struct Totals {
         cl_ulong sum = 0;      ///< of min(count, limit) over all cells
         cl_ulong longest = 0;  ///< the largest count
+        cl_ulong hash = 0;     ///< of all counts and their cells
     };
     /// Enqueues the sums of min(count, limit).
     void sum(const cl::Buffer& heads, cl_uint limit);
     /// Enqueues the reading of the totals of the last sum(): `totals` has them once the event has
     /// completed.
     [[nodiscard]] Reading read_later(Totals& totals) const;
-    /// The totals of the last sum(). Blocks.
-
-    /// Writes the offsets of the lists, none over `capacity_nodes`, to the begin of the heads: one a
-    /// cell, and the end of the last list. Follows a sum() without a limit.
-    void write_offsets(const cl::Buffer& heads, std::uint64_t capacity_nodes);
+    /// Writes the offsets of the lists, none over `capacity_nodes`: one a cell, and the end of the last
+    /// list. They may take the place of the counts. Follows a sum() of the same counts without a limit.
+    void write_offsets(const cl::Buffer& heads, const cl::Buffer& offsets,
+                       std::uint64_t capacity_nodes);
 
 private:
-    std::shared_ptr<DeviceState> device_;
+    cl_uint group_;  ///< work-items
     cl_uint cells_;
     cl_uint counts_at_;
     std::uint64_t blocks_;
@@ -38,6 +38,7 @@ private:
     Kernel block_starts_;
     Kernel block_offsets_;
     Memory sums_;
+    Memory hashes_;
     Memory maxima_;
     Memory totals_;
 };

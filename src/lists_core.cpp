@@ -116,12 +116,17 @@ void ListsCore::clear() {
 
 std::function<Validation()> ListsCore::validate() const {
     refuse_while_open();
-    settle();
-    return storage_->validate();
+    settle_for_commands();
+    std::function<Validation()> result = storage_->validate();
+    if (!pending_) return result;
+    return [build = pending_, result = std::move(result)] {
+        build->finish();
+        return result();
+    };
 }
 
 std::uint64_t ListsCore::capacity_nodes() const { return storage_->capacity_nodes(); }
-std::uint64_t ListsCore::pool_bytes() const { return storage_->bytes(); }
+std::uint64_t ListsCore::pool_bytes() const { return storage_->bytes() + device_.bytes(); }
 unsigned ListsCore::mode() const { return storage_->mode(); }
 cl::Event ListsCore::marker() const { return device_->marker(); }
 
@@ -163,33 +168,34 @@ ListSorter& ListsCore::sorter() {
 
 void ListsCore::sort_as_on(cl_device_type type) { sorter().set_device_type(type); }
 
-/// The length of every list, in words of a device buffer that start at `at`.
-Memory ListsCore::device_lengths(std::uint64_t at) const {
+/// The length of every list, in the first of `words` words of a device buffer.
+Memory ListsCore::device_lengths(std::uint64_t words) const {
     refuse_while_open();
-    Memory lengths(device_, at + shape_.cells(), sizeof(cl_uint), "length buffer");
+    Memory lengths(device_.state(), words, sizeof(cl_uint), "length buffer");
     Arguments arguments;
     add_to(arguments);
     arguments.add(lengths.cl());
-    arguments.add(static_cast<cl_uint>(at));
     kernel("cellist_lengths", kernels::lengths_cl).enqueue(cell_range(), arguments);
     return lengths;
 }
 
 Reading ListsCore::read_lengths(std::vector<cl_uint>& lengths) const {
     lengths.resize(shape_.cells());
-    return device_lengths(0).read_later(lengths.data(), lengths.size() * sizeof(cl_uint));
+    return device_lengths(shape_.cells())
+        .read_later(lengths.data(), lengths.size() * sizeof(cl_uint));
 }
 
-/// Where each list goes when all lists lie behind one another: cells + 1 offsets, then scratch.
+/// The records of all lists; the most there can be, where a build that drops some is pending.
+std::uint64_t ListsCore::most_records() const {
+    return pending_ ? storage_->capacity_nodes() : storage_->stored();
+}
+
+/// Where each list goes when all lists lie one after the other: cells + 1 offsets.
 Memory ListsCore::device_offsets() const {
-    settle();
-    const std::uint64_t counts_at = shape_.cells() + 1;
-    Memory words = device_lengths(counts_at);
-    if (!scan_)
-        scan_ =
-            std::make_unique<CellScan>(device_, shape_.cells(), static_cast<cl_uint>(counts_at));
+    Memory words = device_lengths(shape_.cells() + 1);
+    if (!scan_) scan_ = std::make_unique<CellScan>(device_, shape_.cells(), 0);
     scan_->sum(words.cl(), CELLIST_NONE);
-    scan_->write_offsets(words.cl(), storage_->stored());
+    scan_->write_offsets(words.cl(), words.cl(), most_records());
     return words;
 }
 
@@ -210,19 +216,22 @@ void ListsCore::gather(std::uint64_t begin, std::uint64_t end, const Memory& off
 
 void ListsCore::download(Arrival& done, std::vector<cl_uint>& offsets,
                          const std::function<void*(std::uint64_t)>& allocate) const {
+    settle_for_commands();
+    // Up to 256 MiB of lists at a time, at least one list, so that the copy fits beside the pool.
+    const std::size_t record_bytes = definitions_.records.back().size;
+    const std::uint64_t most = std::max<std::uint64_t>(
+        std::min(std::uint64_t{256} << 20, device_->info.max_allocation_bytes) / record_bytes, 1);
+    if (most_records() > most) settle();
     const Memory words = device_offsets();
-    const std::uint64_t total = storage_->stored();
+    const std::uint64_t total = most_records();
     auto* target = static_cast<std::byte*>(allocate(total));
     offsets.resize(shape_.cells() + 1);
     done = words.read_later(offsets.data(), offsets.size() * sizeof(cl_uint));
 
-    // Up to 256 MiB of lists at a time, at least one list, so that the copy fits beside the pool.
-    const std::size_t record_bytes = definitions_.records.back().size;
-    const std::uint64_t most = (std::uint64_t{256} << 20) / record_bytes;
     const auto copy = [&](std::uint64_t begin, std::uint64_t end, std::uint64_t first,
                           std::uint64_t count) {
         if (count == 0) return;
-        const Memory records(device_, count, record_bytes, "download buffer");
+        const Memory records(device_.state(), count, record_bytes, "download buffer");
         gather(begin, end, words, records.cl(), record(), "record");
         done = records.read_later(target + first * record_bytes, count * record_bytes);
     };
@@ -239,12 +248,13 @@ void ListsCore::download(Arrival& done, std::vector<cl_uint>& offsets,
 void ListsCore::pack(const cl::Buffer& offsets,
                      const std::function<const cl::Buffer&(std::uint64_t)>& allocate,
                      const std::string& type, const std::string& value) const {
+    settle_for_commands();
     const Memory words = device_offsets();
     opencl([&] {
         device_->ordered_queue().enqueueCopyBuffer(words.cl(), offsets, 0, 0,
                                                    (shape_.cells() + 1) * sizeof(cl_uint));
     });
-    gather(0, shape_.cells(), words, allocate(storage_->stored()), type, value);
+    gather(0, shape_.cells(), words, allocate(most_records()), type, value);
 }
 
 /// How many records the kernels insert into each cell. The report says that all of them are dropped.

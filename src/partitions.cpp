@@ -51,15 +51,14 @@ std::optional<Partitions::Plan> Partitions::plan(const DeviceInfo& device, std::
     return plan;
 }
 
-Partitions::Partitions(const std::shared_ptr<DeviceState>& device, const Plan& plan)
+Partitions::Partitions(const MemoryOwner& device, const Plan& plan)
     : plan_(plan),
       nodes_(device, plan.nodes, plan.node_bytes, "partitions"),
       heads_(device, plan.head_words(), sizeof(cl_uint), "heads of partitions"),
       starts_(device, 1 + std::uint64_t{plan.partitions}, sizeof(cl_uint), "starts of partitions") {
 }
 
-std::unique_ptr<Partitions> Partitions::make(const std::shared_ptr<DeviceState>& device,
-                                             const Plan& plan) {
+std::unique_ptr<Partitions> Partitions::make(const MemoryOwner& device, const Plan& plan) {
     try {
         return std::unique_ptr<Partitions>(new Partitions(device, plan));
     } catch (const OpenClError& error) {

@@ -34,8 +34,8 @@ public:
                                                   std::uint64_t cells, std::uint64_t records);
 
     /// Null where the device has no memory for it.
-    [[nodiscard]] static std::unique_ptr<Partitions> make(
-        const std::shared_ptr<DeviceState>& device, const Plan& plan);
+    [[nodiscard]] static std::unique_ptr<Partitions> make(const MemoryOwner& device,
+                                                          const Plan& plan);
 
     [[nodiscard]] const Plan& plan() const { return plan_; }
     [[nodiscard]] const Memory& nodes() const { return nodes_; }
@@ -44,7 +44,7 @@ public:
     [[nodiscard]] const Memory& starts() const { return starts_; }
 
 private:
-    Partitions(const std::shared_ptr<DeviceState>& device, const Plan& plan);
+    Partitions(const MemoryOwner& device, const Plan& plan);
 
     Plan plan_;
     Memory nodes_;

@@ -104,20 +104,19 @@ std::uint64_t ListStorage::counters_with(std::uint64_t capacity_nodes) const {
 }
 
 std::uint64_t ListStorage::bytes_with(std::uint64_t capacity_nodes) const {
-    return heads_.size_bytes() + pool_nodes_with(capacity_nodes) * node_bytes_ +
+    return bytes() - replaceable_bytes() + pool_nodes_with(capacity_nodes) * node_bytes_ +
            counters_with(capacity_nodes) * sizeof(cellist_shard);
 }
 
-std::uint64_t ListStorage::bytes() const {
-    return bytes_with(capacity_nodes_) +
+std::uint64_t ListStorage::replaceable_bytes() const {
+    return nodes_.size_bytes() + shards_.size_bytes() +
            (spare_ ? spare_->nodes.size_bytes() + spare_->heads.size_bytes() : 0);
 }
 
 const ListStorage::Spare* ListStorage::spare() {
     if (spare_) return &*spare_;
     const std::uint64_t heads = mode_ == CELLIST_LINKED ? shape_.cells() : 0;
-    const std::uint64_t all = bytes() + nodes_.size_bytes() + heads * sizeof(cl_uint);
-    if (all > options_.budget_bytes || all > device_->info.global_memory_bytes) return nullptr;
+    if (!has_room_for(bytes() + nodes_.size_bytes() + heads * sizeof(cl_uint))) return nullptr;
     try {
         Spare made{Memory(device_, pool_nodes(), node_bytes_, "second pool"),
                    Memory(device_, heads, sizeof(cl_uint), "second head buffer")};
@@ -252,7 +251,7 @@ void ListStorage::grow_pool(std::uint64_t capacity_nodes, const BuildReport& rep
 }
 
 void ListStorage::update(BuildReport& report, const Counters& counters, std::uint64_t stored) {
-    stored_ = stored;
+    expected_->stored = stored;
     report.stored = stored;
     report.dropped = counters.dropped;
     report.rejected = counters.rejected;
@@ -262,7 +261,6 @@ void ListStorage::update(BuildReport& report, const Counters& counters, std::uin
 
 Reading ListStorage::find(Findings& findings, Kernel& kernel, const Arguments& arguments) const {
     constexpr cl_uint zero = 0;
-    findings.memory = Memory(device_, 1, sizeof findings.found, "findings");
     findings.memory.fill(&zero, sizeof zero, sizeof findings.found);
     Arguments all = arguments;
     all.add(findings.memory.cl());
@@ -272,6 +270,7 @@ Reading ListStorage::find(Findings& findings, Kernel& kernel, const Arguments& a
 
 void ListStorage::start() {
     growths_ = 0;
+    expect_nothing();
     start_anew();
 }
 

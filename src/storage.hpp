@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -62,8 +63,8 @@ public:
     /// afterwards if there was none, or if `without_pool` says so.
     void recover(bool without_pool);
 
-    /// Looks for links, offsets and counts that do not belong together. The result may be asked for
-    /// once; that blocks, this does not.
+    /// Looks for links, offsets and counts that do not belong together, or differ from those of the last
+    /// build. The result may be asked for once, when that build is finished; that blocks, this does not.
     [[nodiscard]] virtual std::function<Validation()> validate() = 0;
 
     /// From now on, these cells alone have lists. The lists must be empty.
@@ -85,8 +86,12 @@ public:
     [[nodiscard]] std::uint64_t pool_nodes() const { return pool_nodes_with(capacity_nodes_); }
     /// Elements of the counters, hands of threads included.
     [[nodiscard]] std::uint64_t counters() const { return counters_with(capacity_nodes_); }
-    /// Device memory of all buffers.
-    [[nodiscard]] virtual std::uint64_t bytes() const;
+    /// Device memory of all buffers that the storage keeps.
+    [[nodiscard]] std::uint64_t bytes() const { return device_.bytes(); }
+    /// Whether the budget and the device allow for so much.
+    [[nodiscard]] bool has_room_for(std::uint64_t all_bytes) const {
+        return all_bytes <= std::min(options_.budget_bytes, device_->info.global_memory_bytes);
+    }
     [[nodiscard]] std::uint64_t cells() const { return shape_.cells(); }
     [[nodiscard]] const cl::Buffer& nodes() const { return nodes_.cl(); }
 
@@ -100,11 +105,11 @@ public:
     [[nodiscard]] const Spare* spare();
     /// The spare nodes and heads take the place of the pool's, and these become spare: linked lists have
     /// moved, and nothing else is in the pool.
-    virtual void adopt_spare() noexcept;
+    void adopt_spare() noexcept;
     /// The mode in which the lists are read.
     [[nodiscard]] cl_uint mode() const { return mode_; }
     /// Records in the lists.
-    [[nodiscard]] std::uint64_t stored() const { return stored_; }
+    [[nodiscard]] std::uint64_t stored() const { return expected_->stored; }
 
 protected:
     struct Counters {
@@ -136,6 +141,8 @@ protected:
     /// Elements of the counters, hands and their owners included.
     [[nodiscard]] std::uint64_t counters_with(std::uint64_t capacity_nodes) const;
     [[nodiscard]] std::uint64_t bytes_with(std::uint64_t capacity_nodes) const;
+    /// What another pool takes the place of.
+    [[nodiscard]] virtual std::uint64_t replaceable_bytes() const;
     /// Why the pool cannot have this capacity, if it cannot.
     [[nodiscard]] std::optional<std::string> refusal(std::uint64_t capacity_nodes) const;
     /// Makes a pool of this capacity; the nodes of the old one are gone. Throws Error.
@@ -172,17 +179,28 @@ protected:
     [[nodiscard]] Kernel kernel(const std::string& name, std::string_view source,
                                 cl_uint mode) const;
 
+    /// What a build leaves, to which a validation compares what it finds.
+    struct Expected {
+        std::uint64_t stored = 0;
+        std::uint64_t counts_hash = 0;
+    };
+    /// Nothing is in the lists any more, and a build may follow.
+    void expect_nothing() { expected_ = std::make_shared<Expected>(); }
+
     /// What a validating kernel finds, on its way to the host.
     struct Findings {
         Memory memory;
         cellist_findings found{};
     };
+    [[nodiscard]] Memory memory_for_findings() const {
+        return {device_.state(), 1, sizeof(cellist_findings), "findings"};
+    }
     /// Enqueues a validating kernel over all cells: (container, arguments..., findings). What it found
     /// is there when the reading has arrived.
     [[nodiscard]] Reading find(Findings& findings, Kernel& kernel,
                                const Arguments& arguments) const;
 
-    std::shared_ptr<DeviceState> device_;
+    MemoryOwner device_;
     Definitions definitions_;
     Shape shape_;
     ListsOptions options_;
@@ -190,7 +208,7 @@ protected:
     std::size_t node_bytes_;
     std::uint64_t capacity_nodes_ = 0;
     std::optional<std::uint64_t> released_nodes_;  ///< the capacity that release_pool() gave back
-    std::uint64_t stored_ = 0;
+    std::shared_ptr<Expected> expected_ = std::make_shared<Expected>();  ///< of the last build
     cl_uint shard_bits_ = 0;
     cl_uint slots_ = 0;
     bool reserves_ = false;  ///< reservations take their nodes at once

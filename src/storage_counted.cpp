@@ -18,7 +18,7 @@ CountedStorage::CountedStorage(std::shared_ptr<DeviceState> device, const Defini
 
 void CountedStorage::clear() {
     clear_heads_and_counters(0, 0, counts_at() + shape_.cells());
-    stored_ = 0;
+    expect_nothing();
 }
 
 void CountedStorage::add_to(Arguments& arguments) const {
@@ -33,8 +33,8 @@ void CountedStorage::add_to(Arguments& arguments) const {
     ListStorage::add_to(arguments, partitions_->nodes(), partitions_->heads(), partitioned);
 }
 
-std::uint64_t CountedStorage::bytes() const {
-    return ListStorage::bytes() + (partitions_ ? partitions_->plan().bytes() : 0);
+std::uint64_t CountedStorage::replaceable_bytes() const {
+    return ListStorage::replaceable_bytes() + (partitions_ ? partitions_->plan().bytes() : 0);
 }
 
 void CountedStorage::release_pool() noexcept {
@@ -60,10 +60,6 @@ std::unique_ptr<Partitions> CountedStorage::partitions_for_pool() const {
     return Partitions::make(device_, *plan);
 }
 
-bool CountedStorage::has_room_for(std::uint64_t all_bytes) const {
-    return all_bytes <= std::min(options_.budget_bytes, device_->info.global_memory_bytes);
-}
-
 void CountedStorage::prepare_pass() {
     if (partitions_) {
         clear_heads_and_counters(partitions_->heads(), 0, 0, partitions_->plan().words_to_clear());
@@ -85,7 +81,8 @@ bool CountedStorage::finish_pass() {
         return false;
     }
     if (counted_) {
-        reading_ = find_unfilled(filled_);
+        // The offsets are their own: no hand has been on them yet.
+        reading_ = find(filled_, heads_);
         reading_ = read_counters(counters_);
         return false;
     }
@@ -94,7 +91,7 @@ bool CountedStorage::finish_pass() {
     reading_ = read_counters(counting_);
     if (options_.overflow != Overflow::drop) return false;
     // The pool is what it is: no need to look at the counts first.
-    scan_.write_offsets(heads_.cl(), capacity_nodes_);
+    scan_.write_offsets(heads_.cl(), heads_.cl(), capacity_nodes_);
     counted_ = true;
     return true;
 }
@@ -187,7 +184,7 @@ void CountedStorage::make_room(const BuildReport& report) {
                                 report);
         grow_pool(demand, report);
     }
-    scan_.write_offsets(heads_.cl(), capacity_nodes_);
+    scan_.write_offsets(heads_.cl(), heads_.cl(), capacity_nodes_);
 }
 
 void CountedStorage::make_whole(bool without_pool) {
@@ -218,33 +215,42 @@ std::vector<cl_uint> CountedStorage::counts(BuildReport& report) {
     return words;
 }
 
-Reading CountedStorage::find_unfilled(Findings& findings) {
+/// Enqueues the comparison of the counts with the lists, and of the offsets with others.
+Reading CountedStorage::find(Findings& findings, const Memory& offsets) {
     if (!validate_)
         validate_.emplace(
             kernel("cellist_validate_contiguous", kernels::validate_contiguous_cl, mode_));
     Arguments arguments;
     add_to(arguments);
-    return find(findings, *validate_, arguments);
+    arguments.add(offsets.cl());
+    return ListStorage::find(findings, *validate_, arguments);
 }
 
 std::function<Validation()> CountedStorage::validate() {
     struct Check {
+        Memory offsets;
         Findings findings;
         CellScan::Totals inserted;
         Shards shards;
         Arrival done;
     };
     const auto check = std::make_shared<Check>();
-    check->done = find_unfilled(check->findings);
+    check->findings.memory = memory_for_findings();
+    // Where the lists begin that have these counts.
+    check->offsets =
+        Memory(device_.state(), shape_.cells() + 1, sizeof(cl_uint), "validation buffer");
     scan_.sum(heads_.cl(), CELLIST_NONE);
+    scan_.write_offsets(heads_.cl(), check->offsets.cl(), capacity_nodes_);
+    check->done = find(check->findings, check->offsets);
     check->done = scan_.read_later(check->inserted);
     check->done = read_counters(check->shards);
-    return [check, kept = stored_] {
+    return [check, expected_of_build = expected_] {
         check->done.wait();
         // Sound lists that do not add up to what was stored have a wrong end; counts that do not add
         // up to what was stored and dropped are wrong.
         const cellist_findings& found = check->findings.found;
         const Counters counters = sum(check->shards, 0);
+        const std::uint64_t kept = expected_of_build->stored;
         const std::uint64_t missing = kept > found.nodes ? kept - found.nodes : found.nodes - kept;
         const std::uint64_t counted = check->inserted.sum + found.unfilled;
         const std::uint64_t expected = kept + counters.dropped;

@@ -32,7 +32,7 @@ void FixedStorage::set_slots(std::uint64_t slots) {
 
 void FixedStorage::clear() {
     clear_heads_and_counters(0, 0, shape_.cells());
-    stored_ = 0;
+    expect_nothing();
 }
 
 bool FixedStorage::finish_pass() {
@@ -45,6 +45,7 @@ bool FixedStorage::finish_pass() {
 bool FixedStorage::review_pass(BuildReport& report) {
     const Counters counters = sum(counters_, 0);
     update(report, counters, in_slots_.sum);
+    expected_->counts_hash = in_slots_.hash;
     if (counters.dropped == 0 || options_.overflow == Overflow::drop) return true;
 
     const std::uint64_t longest = in_slots_.longest;
@@ -98,17 +99,19 @@ std::function<Validation()> FixedStorage::validate() {
     scan_.sum(heads_.cl(), CELLIST_NONE);
     check->done = scan_.read_later(check->all);
     check->done = read_counters(check->shards);
-    return [check, expected = stored_] {
+    return [check, expected = expected_] {
         check->done.wait();
-        // The counts are all that says which slots are in use: they must add up to what was stored
-        // and to what was dropped.
+        // The counts are all that says which slots are in use: they must be those of the build, and add
+        // up to what was stored and to what was dropped.
         const std::uint64_t stored = check->in_slots.sum;
-        const std::uint64_t lost = stored > expected ? stored - expected : expected - stored;
+        const std::uint64_t lost =
+            stored > expected->stored ? stored - expected->stored : expected->stored - stored;
         const std::uint64_t over = check->all.sum - stored;
         const Counters counters = sum(check->shards, 0);
         // Counts end at their limit, where what was dropped goes on.
-        const bool sound = check->all.longest < CELLIST_CELL_COUNT_MAX ? over == counters.dropped
-                                                                       : over <= counters.dropped;
+        const bool adds_up = check->all.longest < CELLIST_CELL_COUNT_MAX ? over == counters.dropped
+                                                                         : over <= counters.dropped;
+        const bool sound = adds_up && check->all.hash == expected->counts_hash;
         return Validation{sound ? std::uint64_t{0} : std::uint64_t{1}, 0, lost, counters.late, {}};
     };
 }

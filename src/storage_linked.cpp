@@ -47,8 +47,7 @@ cl_uint LinkedStorage::hands_with(std::uint64_t capacity_nodes) const {
 
 void LinkedStorage::clear() {
     clear_heads_and_counters(CELLIST_NONE, 0, shape_.cells());
-    stored_ = 0;
-    unlinked_ = 0;
+    expect_nothing();
 }
 
 bool LinkedStorage::finish_pass() {
@@ -58,8 +57,8 @@ bool LinkedStorage::finish_pass() {
 
 bool LinkedStorage::review_pass(BuildReport& report) {
     const Counters counters = sum(counters_, hands_with(capacity_nodes_));
-    unlinked_ = counters.open_reservations == 0 ? 0 : count_unlinked();
-    update(report, counters, counters.allocated - unlinked_);
+    const std::uint64_t unlinked = counters.open_reservations == 0 ? 0 : count_unlinked();
+    update(report, counters, counters.allocated - unlinked);
     if (counters.dropped == 0 || options_.overflow == Overflow::drop) return true;
 
     const std::uint64_t demand = counters.allocated + counters.dropped + counters.missing;
@@ -103,11 +102,6 @@ void LinkedStorage::reserve(std::uint64_t total, std::uint64_t) {
     if (options_.overflow == Overflow::grow && capacity_nodes_ < total) make_pool(total);
 }
 
-void LinkedStorage::adopt_spare() noexcept {
-    ListStorage::adopt_spare();
-    unlinked_ = 0;
-}
-
 std::function<Validation()> LinkedStorage::validate() {
     struct Check {
         Memory reached;
@@ -117,7 +111,9 @@ std::function<Validation()> LinkedStorage::validate() {
     };
     const auto check = std::make_shared<Check>();
     constexpr cl_uint zero = 0;
-    check->reached = Memory(device_, (pool_nodes() + 31) / 32, sizeof zero, "validation buffer");
+    check->reached =
+        Memory(device_.state(), (pool_nodes() + 31) / 32, sizeof zero, "validation buffer");
+    check->findings.memory = memory_for_findings();
     check->reached.fill(&zero, sizeof zero, check->reached.size_bytes());
     if (!validate_)
         validate_.emplace(kernel("cellist_validate_linked", kernels::validate_linked_cl, mode_));
@@ -126,15 +122,13 @@ std::function<Validation()> LinkedStorage::validate() {
     arguments.add(check->reached.cl());
     check->done = find(check->findings, *validate_, arguments);
     check->done = read_counters(check->shards);
-    return [check, unlinked = unlinked_, hands = hands_with(capacity_nodes_)] {
+    return [check, expected = expected_, hands = hands_with(capacity_nodes_)] {
         check->done.wait();
         const cellist_findings& found = check->findings.found;
-        const Counters counters = sum(check->shards, hands);
         // A list that leads to an unlinked node is broken there, with that node counted in.
-        const std::uint64_t linked = counters.allocated - unlinked;
         return Validation{found.broken, found.repeated,
-                          linked - std::min<std::uint64_t>(linked, found.nodes), counters.late,
-                          bad_cell(found)};
+                          expected->stored - std::min<std::uint64_t>(expected->stored, found.nodes),
+                          sum(check->shards, hands).late, bad_cell(found)};
     };
 }
 

@@ -38,7 +38,7 @@ NearestStorage::NearestStorage(std::shared_ptr<DeviceState> device, const Defini
 
 void NearestStorage::clear() {
     clear_heads_and_counters(0, 0, shape_.cells());
-    stored_ = 0;
+    expect_nothing();
 }
 
 void NearestStorage::start_anew() {
@@ -110,6 +110,7 @@ bool NearestStorage::finish_pass() {
 
 bool NearestStorage::review_pass(BuildReport& report) {
     update(report, sum(counters_, 0), kept_.sum);
+    expected_->counts_hash = kept_.hash;
     // Records that are equal in every word are the same: any of them will do.
     if (choice_.undecided == 0 || rank_words_ >= choice_.words) return true;
     ranked_ = false;
@@ -132,15 +133,17 @@ std::function<Validation()> NearestStorage::validate() {
     scan_.sum(heads_.cl(), CELLIST_NONE);
     check->done = scan_.read_later(check->all);
     check->done = read_counters(check->shards);
-    return [check, expected = stored_, slots = slots_] {
+    return [check, expected = expected_, slots = slots_] {
         check->done.wait();
         // The counts are all that says which slots are in use.
         const std::uint64_t stored = check->all.sum;
-        return Validation{check->all.longest > slots ? std::uint64_t{1} : std::uint64_t{0},
-                          0,
-                          stored > expected ? stored - expected : expected - stored,
-                          sum(check->shards, 0).late,
-                          {}};
+        const bool sound = check->all.longest <= slots && check->all.hash == expected->counts_hash;
+        return Validation{
+            sound ? std::uint64_t{0} : std::uint64_t{1},
+            0,
+            stored > expected->stored ? stored - expected->stored : expected->stored - stored,
+            sum(check->shards, 0).late,
+            {}};
     };
 }
 

@@ -19,7 +19,6 @@ public:
     std::uint64_t nodes_for(std::uint64_t total, std::uint64_t longest,
                             std::uint64_t cells) const override;
     void reserve(std::uint64_t total, std::uint64_t longest) override;
-    void adopt_spare() noexcept override;
 
 private:
     bool finish_pass() override;
@@ -29,7 +28,6 @@ private:
 
     [[nodiscard]] std::uint64_t count_unlinked();
 
-    std::uint64_t unlinked_ = 0;  ///< nodes that reservations of the last build did not use
     std::optional<Kernel> unlinked_kernel_;
     std::optional<Kernel> validate_;
 };
@@ -46,7 +44,6 @@ public:
                             std::uint64_t cells) const override;
     void reserve(std::uint64_t total, std::uint64_t longest) override;
     void add_to(Arguments& arguments) const override;
-    std::uint64_t bytes() const override;
     void release_pool() noexcept override;
 
     /// What the counting pass counted: records of each cell, all of them dropped by the report.
@@ -63,16 +60,16 @@ private:
     [[nodiscard]] std::unique_ptr<Partitions> partitions_for_pool() const;
     void move_from_partitions();
     bool review_partitions(BuildReport& report);
-    [[nodiscard]] bool has_room_for(std::uint64_t all_bytes) const;
+    [[nodiscard]] std::uint64_t replaceable_bytes() const override;
     void make_room(const BuildReport& report);
-    Reading find_unfilled(Findings& findings);
+    Reading find(Findings& findings, const Memory& offsets);
     [[nodiscard]] cl_uint counts_at() const { return static_cast<cl_uint>(shape_.cells() + 1); }
 
     CellScan scan_;
     bool counted_ = false;  ///< the next pass fills
     Shards counting_;       ///< counters of the counting pass
     CellScan::Totals demand_;
-    Findings filled_;  ///< of the filling pass
+    Findings filled_{{device_, 1, sizeof(cellist_findings), "findings"}};  ///< of the filling pass
     std::optional<Kernel> validate_;
     std::unique_ptr<Partitions> partitions_;  ///< kept between builds; null where these count
     std::uint64_t no_place_up_to_ =

@@ -24,8 +24,9 @@
 
 namespace cellist {
 
-/// The lists of all cells in device memory, one behind the other: the records of cell c, or a member
-/// of each, are records[offsets[c]] ... records[offsets[c + 1] - 1].
+/// The lists of all cells in device memory, one after the other: the records of cell c, or a member
+/// of each, are records[offsets[c]] ... records[offsets[c + 1] - 1]. There are offsets[cells] of them.
+/// The buffer has room for as many; for more where they were packed before their number was known.
 template <class T>
 struct Packed {
     Buffer<cl_uint> offsets;  ///< cells + 1
@@ -39,7 +40,9 @@ struct Packed {
 /// the alignment of both.
 ///
 /// Owned by value, movable, not copyable. What runs on the device is enqueued on the device's queue;
-/// calls that return results block until they have them, the others do not.
+/// calls that return results block until they have them. The others do not, with one exception: whatever
+/// uses lists with a pending build that may still change them ends that build, and blocks for it. Under
+/// Overflow::drop no build may, unless the storage is automatic.
 template <class T>
 class Lists {
     static_assert(detail::Adapted<T>, "adapt the record with CELLIST_STRUCT first");
@@ -77,7 +80,7 @@ public:
     /// called again after the pool has grown.
     BuildReport build(std::invocable auto&& insert) { return core_->build(std::ref(insert)); }
 
-    /// Starts the same and does not block. The event completes after the first pass; get() runs more
+    /// Starts the same and does not block, but for a build of these lists that is still pending. The event completes after the first pass; get() runs more
     /// of them if the pool was too small, or throws. Until then the lists are incomplete, unless the
     /// policy is Overflow::drop: whatever uses them calls get() itself, blocks and throws in its place.
     /// The kernel and the arguments that are memory must stay until then.
@@ -112,7 +115,7 @@ public:
         return core_->build_slices(std::ref(insert), std::ref(read));
     }
 
-    /// Empties the lists; the pool keeps its capacity. Does not block.
+    /// Empties the lists; the pool keeps its capacity. Blocks for a pending build only, whatever its policy.
     void clear() { core_->clear(); }
 
     /// Sorts every list by a scalar member: cellist_for_each then visits the least first, or the
@@ -125,8 +128,9 @@ public:
     /// well. Where the budget or the device has no memory for it, lists are sorted as by sort_async().
     ///
     /// Blocks until it is known how long the lists are. The first calls for a member compile kernels.
-    /// Throws Error where links lead in circles and there is a second pool. Whatever fails, sound lists
-    /// hold what they held.
+    /// Throws Error where links lead in circles, out of the pool, or from several lists to the same nodes,
+    /// or lists do not have the nodes of the last build, if there is a second pool. Offsets and counts of
+    /// the other storages are not looked at: validate() is. Whatever fails, sound lists hold what they held.
     template <class M>
     cl::Event sort(M T::*member, Order order = Order::ascending) {
         return core_->sort(key_of(member, order), all_nodes);
@@ -135,8 +139,9 @@ public:
     /// The same by an OpenCL C expression of `record`, of integer or float type, such as
     /// "record.depth * record.depth". Throws OpenClError with the compiler's log if it does not
     /// compile, and Error if it is more than one expression: commas outside of parentheses, quoted
-    /// text and directives are refused. Its value must be defined: after a division by 0 the order is
-    /// not, and records may be lost.
+    /// text and directives are refused. Where its value differs from call to call, as after a division by
+    /// 0 or by get_global_id(), lists are in no order, and no record is lost. What a device does with
+    /// undefined operations is the expression's own risk: some processors end the program.
     cl::Event sort_by(const std::string& expression, Order order = Order::ascending) {
         return core_->sort({expression, 64, order}, all_nodes);
     }
@@ -182,7 +187,9 @@ public:
 
     /// A copy of all lists in host memory. Blocks.
     [[nodiscard]] HostLists<T> download() const { return download_async().get(); }
-    /// The same without blocking where the records take up to 256 MiB.
+    /// The same without blocking, where the records take up to 256 MiB and no more than the device can
+    /// allocate at once. While a build under Overflow::drop is pending, that counts for the whole pool,
+    /// which is copied: the number of records is not known.
     [[nodiscard]] Pending<HostLists<T>> download_async() const {
         struct State {
             std::vector<cl_uint> offsets;
@@ -196,13 +203,15 @@ public:
         });
         return {state->done.event(), [state, shape = shape()] {
                     state->done.wait();
+                    state->records.resize(state->offsets.back());
                     return HostLists<T>(shape, {state->offsets.begin(), state->offsets.end()},
                                         std::move(state->records));
                 }};
     }
 
-    /// A copy of all lists in device memory, one behind the other, for kernels that leave the
-    /// container. Does not block.
+    /// A copy of all lists in device memory, one after the other, for kernels that leave the
+    /// container. Does not block, but for a pending build that may still change the lists. While a build
+    /// under Overflow::drop is pending, the copy has room for capacity_nodes() records.
     [[nodiscard]] Packed<T> pack() const { return pack<T>(DeviceType<T>::name(), "record"); }
     /// The same of a single member: an array of its own where a reader needs only the key.
     template <class M>
@@ -212,20 +221,24 @@ public:
     }
 
     /// Checks that every allocated node is reached from exactly one head, exactly once. Finds any
-    /// corruption of heads and links in time proportional to cells + nodes. Takes one bit of device
-    /// memory a node. Sums are compared with those of the last build; inserts outside of one are
-    /// counted. Blocks.
+    /// corruption of heads and links in time proportional to cells + nodes. Sums are compared with those
+    /// of the last build; inserts outside of one are counted. Where lists are contiguous, their borders
+    /// are compared with the counts of the last build (Storage::counted), or counts with a hash of these
+    /// (Storage::fixed): a word that has changed is found. Takes one bit of device memory a node in
+    /// Storage::linked, and 4 bytes a cell in Storage::counted. Blocks.
     [[nodiscard]] Validation validate() const { return core_->validate()(); }
     /// The same without blocking.
     [[nodiscard]] Pending<Validation> validate_async() const {
         std::function<Validation()> result = core_->validate();
-        return {core_->marker(), std::move(result)};
+        return {core_->marker(), [core = core_, result = std::move(result)] { return result(); }};
     }
 
     [[nodiscard]] const Shape& shape() const { return core_->shape(); }
     /// Nodes in the pool.
     [[nodiscard]] std::uint64_t capacity_nodes() const { return core_->capacity_nodes(); }
-    /// Device memory of heads, nodes and counters, and of what sorts and builds keep for the next ones.
+    /// Device memory of every buffer that the container keeps: heads, nodes, counters, and what sorts,
+    /// downloads and builds keep for the next ones. budget_bytes bounds it but for sums over the cells: 20
+    /// bytes for 4,096 cells, and some hundred bytes.
     [[nodiscard]] std::uint64_t pool_bytes() const { return core_->pool_bytes(); }
     /// The storage in use: in Storage::automatic the one of the last build.
     [[nodiscard]] Storage storage() const { return core_->storage_in_use(); }

@@ -72,14 +72,15 @@ public:
     /// Enqueues the reading of every list's length; `lengths` has them when it has arrived.
     [[nodiscard]] Reading read_lengths(std::vector<cl_uint>& lengths) const;
 
-    /// Enqueues the reading of all lists: cells + 1 offsets, and where `allocate` says, given their
-    /// number, the records. Blocks only where they are too many to be copied at once.
+    /// Enqueues the reading of all lists: cells + 1 offsets, and where `allocate` says, given the most
+    /// there can be, the records. Blocks where they are too many to be copied at once, and for a pending
+    /// build that may still change the lists.
     void download(Arrival& done, std::vector<cl_uint>& offsets,
                   const std::function<void*(std::uint64_t)>& allocate) const;
 
-    /// Enqueues the writing of cells + 1 offsets, calls `allocate` with the number of records, and
-    /// enqueues the copy of a value of each record, of an OpenCL C type, to the buffer that it
-    /// returns, one list behind the other.
+    /// Enqueues the writing of cells + 1 offsets, calls `allocate` with the most records there can be,
+    /// and enqueues the copy of a value of each record, of an OpenCL C type, to the buffer that it
+    /// returns, one list after the other. Blocks for a pending build that may still change the lists.
     void pack(const cl::Buffer& offsets,
               const std::function<const cl::Buffer&(std::uint64_t)>& allocate,
               const std::string& type, const std::string& value) const;
@@ -87,7 +88,7 @@ public:
     [[nodiscard]] const Shape& shape() const { return shape_; }
     [[nodiscard]] std::uint64_t capacity_nodes() const;
     [[nodiscard]] std::uint64_t pool_bytes() const;
-    [[nodiscard]] const std::shared_ptr<DeviceState>& device() const { return device_; }
+    [[nodiscard]] const std::shared_ptr<DeviceState>& device() const { return device_.state(); }
     [[nodiscard]] const std::string& record() const { return definitions_.records.back().name; }
     /// What is in use, never Storage::automatic.
     [[nodiscard]] Storage storage_in_use() const { return in_use_; }
@@ -131,7 +132,8 @@ private:
     Kernel& kernel(const std::string& name, std::string_view source,
                    const std::string& definitions = {}) const;
     [[nodiscard]] Range cell_range() const;
-    [[nodiscard]] Memory device_lengths(std::uint64_t at) const;
+    [[nodiscard]] Memory device_lengths(std::uint64_t words) const;
+    [[nodiscard]] std::uint64_t most_records() const;
     [[nodiscard]] Memory device_offsets() const;
     void gather(std::uint64_t begin, std::uint64_t end, const Memory& offsets,
                 const cl::Buffer& values, const std::string& type, const std::string& value) const;
@@ -145,7 +147,7 @@ private:
     [[nodiscard]] PlannedSlice plan_slice(std::uint64_t first,
                                           const std::vector<cl_uint>& counts) const;
 
-    std::shared_ptr<DeviceState> device_;
+    MemoryOwner device_;
     Definitions definitions_;
     Shape shape_;
     ListsOptions options_;

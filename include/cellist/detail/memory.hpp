@@ -1,8 +1,10 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <utility>
 
 #include <cellist/detail/arrival.hpp>
 #include <cellist/opencl.hpp>
@@ -10,6 +12,27 @@
 namespace cellist::detail {
 
 struct DeviceState;
+
+/// A device, and a sum of the memory that is made for one owner on it.
+class MemoryOwner {
+public:
+    explicit MemoryOwner(std::shared_ptr<DeviceState> state) : state_(std::move(state)) {}
+
+    [[nodiscard]] const std::shared_ptr<DeviceState>& state() const { return state_; }
+    operator const std::shared_ptr<DeviceState>&() const { return state_; }
+    DeviceState* operator->() const { return state_.get(); }
+    DeviceState& operator*() const { return *state_; }
+
+    /// Bytes of all memory of this owner that there is now.
+    [[nodiscard]] std::uint64_t bytes() const { return *bytes_; }
+
+private:
+    friend class Memory;
+
+    std::shared_ptr<DeviceState> state_;
+    std::shared_ptr<std::atomic<std::uint64_t>> bytes_ =
+        std::make_shared<std::atomic<std::uint64_t>>(0);
+};
 
 /// A buffer on a device with checked sizes and one way to fail. Never empty for OpenCL: 0 elements
 /// take one byte.
@@ -20,6 +43,12 @@ public:
     /// OpenClError where there is no memory; some drivers of GPUs tell so only at the first use.
     Memory(std::shared_ptr<DeviceState> state, std::uint64_t count, std::size_t element_bytes,
            const char* what = "buffer");
+    /// The same; its size counts as the owner's as long as it is there.
+    Memory(const MemoryOwner& owner, std::uint64_t count, std::size_t element_bytes,
+           const char* what)
+        : Memory(owner.state_, count, element_bytes, what) {
+        share_ = Share(owner.bytes_, size_bytes_);
+    }
 
     Memory(Memory&&) noexcept = default;
     Memory& operator=(Memory&&) noexcept = default;
@@ -43,9 +72,35 @@ public:
     void fill(const void* pattern, std::size_t pattern_bytes, std::size_t bytes);
 
 private:
+    /// A part of an owner's sum.
+    class Share {
+    public:
+        Share() = default;
+        Share(std::shared_ptr<std::atomic<std::uint64_t>> sum, std::uint64_t bytes)
+            : sum_(std::move(sum)), bytes_(bytes) {
+            *sum_ += bytes_;
+        }
+        Share(Share&& other) noexcept { *this = std::move(other); }
+        Share& operator=(Share&& other) noexcept {
+            std::swap(sum_, other.sum_);
+            std::swap(bytes_, other.bytes_);
+            return *this;
+        }
+        Share(const Share&) = delete;
+        Share& operator=(const Share&) = delete;
+        ~Share() {
+            if (sum_) *sum_ -= bytes_;
+        }
+
+    private:
+        std::shared_ptr<std::atomic<std::uint64_t>> sum_;
+        std::uint64_t bytes_ = 0;
+    };
+
     std::shared_ptr<DeviceState> state_;
     cl::Buffer buffer_;
     std::uint64_t size_bytes_ = 0;
+    Share share_;
 };
 
 }  // namespace cellist::detail
