@@ -8,8 +8,11 @@
 //   CELLIST_SORT_TEAM       work-items that sort a list, a power of two
 //   CELLIST_SORT_ITEMS      work-items that sort together, a power of two. More than one are a
 //                           work-group and share local memory (GPUs); one needs neither (CPUs)
+//   CELLIST_SORT_PIECE      the type in whose size nodes move, where they are too large for private memory
 //
-// and behind this file cellist_sort_key, which maps the key to an unsigned integer of the same order.
+// and after this file cellist_sort_key(pointer to a record), which maps the key to an unsigned integer of
+// the same order. Its value may differ from call to call, where the user's expression is no order. No
+// record is lost then: what moves a record compares each pair once, or reads keys that were stored.
 //
 // The rank of a record is the number of records that come before it. Ranking compares all with all: for
 // up to some hundred records this is faster than sorts with fewer comparisons, because it does not
@@ -61,22 +64,51 @@ typedef struct cellist_sort_node {
 #define cellist_sort_record(node) ((node).stored)
 #endif
 
-// Writes a node to its place in a list that lies in one piece; `last` is the place of the last node.
-static inline void cellist_sort_store(global cellist_sort_node* nodes, uint at, uint last,
-                                      cellist_sort_node node) {
-#if CELLIST_MODES == CELLIST_LINKED
-    node.stored.next = at < last ? at + 1 : CELLIST_NONE;
+// What moves at once: a node, or a part of a large one.
+#ifdef CELLIST_SORT_PIECE
+#ifdef __clang__
+typedef CELLIST_SORT_PIECE __attribute__((may_alias)) cellist_sort_piece;
+#else
+typedef CELLIST_SORT_PIECE cellist_sort_piece;
 #endif
-    nodes[at] = node;
+#else
+typedef cellist_sort_node cellist_sort_piece;
+#endif
+#define CELLIST_SORT_PIECES (sizeof(cellist_sort_node) / sizeof(cellist_sort_piece))
+
+// The link of the node at `at` in a list that lies in one piece; `last` is the place of the last node.
+static inline uint cellist_sort_link(uint at, uint last) {
+    return at < last ? at + 1 : CELLIST_NONE;
+}
+
+// Copies a node to its place in a list that lies in one piece.
+static inline void cellist_sort_store(global cellist_sort_node* nodes, uint at, uint last,
+                                      global const cellist_sort_node* node) {
+#if CELLIST_MODES != CELLIST_LINKED
+    nodes[at] = *node;
+#elif defined(CELLIST_SORT_PIECE)
+    nodes[at] = *node;
+    nodes[at].stored.next = cellist_sort_link(at, last);
+#else
+        cellist_sort_node moved = *node;
+        moved.stored.next = cellist_sort_link(at, last);
+        nodes[at] = moved;
+#endif
 }
 
 #if CELLIST_MODES != CELLIST_LINKED
+// Whether the offsets of a list are impossible.
+static inline int cellist_sort_is_broken(volatile global uint* heads, const cellist_view view,
+                                         uint cell) {
+    const uint end = cellist_end(heads, view, cell);
+    return cellist_begin(heads, view, cell) > end || end > view.capacity_nodes;
+}
+
 // Nodes of a list; none where the offsets are impossible.
 static inline uint cellist_sort_length(volatile global uint* heads, const cellist_view view,
                                        uint cell) {
-    const uint begin = cellist_begin(heads, view, cell);
-    const uint end = cellist_end(heads, view, cell);
-    return begin <= end && end <= view.capacity_nodes ? end - begin : 0;
+    if (cellist_sort_is_broken(heads, view, cell)) return 0;
+    return cellist_end(heads, view, cell) - cellist_begin(heads, view, cell);
 }
 #endif
 
@@ -157,18 +189,47 @@ static void cellist_sort_order_equal(global const cellist_sort_node* nodes, uint
     cellist_sort_each_run(n, at, member, length) {
         for (uint i = at; i < at + CELLIST_SORT_WIDTH && i < length; ++i) {
             const cellist_sort_bits key = keys[i];
-            const struct CELLIST_RECORD own =
-                cellist_sort_record(nodes[first + (index ? index[i] : i)]);
+            global const struct CELLIST_RECORD* own =
+                &cellist_sort_record(nodes[first + (index ? index[i] : i)]);
             uint place = 0;
             for (uint j = 0; j < length; ++j) {
                 place += keys[j] < key;
                 if (keys[j] != key || j == i) continue;
-                const struct CELLIST_RECORD other =
-                    cellist_sort_record(nodes[first + (index ? index[j] : j)]);
+                global const struct CELLIST_RECORD* other =
+                    &cellist_sort_record(nodes[first + (index ? index[j] : j)]);
                 place += cellist_record_before(other, own, 0) ||
                          (j < i && !cellist_record_before(own, other, 0));
             }
             order[place] = (uchar)i;
         }
     }
+}
+
+// Moves the `length` nodes from `first` on into the order that was found, piece by piece. All work-items of
+// the group call it.
+static inline void cellist_sort_permute(global cellist_sort_node* nodes, uint first, uint last,
+                                        uint length, uint member,
+                                        CELLIST_SORT_SHARED const uchar* order) {
+    global cellist_sort_piece* pieces = (global cellist_sort_piece*)(nodes + first);
+    cellist_sort_piece moved[CELLIST_SORT_SLOTS / CELLIST_SORT_TEAM];
+    for (uint piece = 0; piece < CELLIST_SORT_PIECES; ++piece) {
+        for (uint i = 0; i < CELLIST_SORT_SLOTS / CELLIST_SORT_TEAM; ++i) {
+            const uint at = member + i * CELLIST_SORT_TEAM;
+            if (at >= length) break;
+            moved[i] = pieces[(ulong)order[at] * CELLIST_SORT_PIECES + piece];
+        }
+        cellist_sort_barrier();
+        for (uint i = 0; i < CELLIST_SORT_SLOTS / CELLIST_SORT_TEAM; ++i) {
+            const uint at = member + i * CELLIST_SORT_TEAM;
+            if (at >= length) break;
+#if CELLIST_MODES == CELLIST_LINKED && !defined(CELLIST_SORT_PIECE)
+            moved[i].stored.next = cellist_sort_link(first + at, last);
+#endif
+            pieces[(ulong)at * CELLIST_SORT_PIECES + piece] = moved[i];
+        }
+    }
+#if CELLIST_MODES == CELLIST_LINKED && defined(CELLIST_SORT_PIECE)
+    for (uint at = member; at < length; at += CELLIST_SORT_TEAM)
+        nodes[first + at].stored.next = cellist_sort_link(first + at, last);
+#endif
 }

@@ -8,8 +8,8 @@
 //   cells   count   the cells to sort; all, from 0 on, if `listed` is 0
 
 // Whether record a, with key x, comes before record b, with key y.
-static inline int cellist_sort_before(struct CELLIST_RECORD a, cellist_sort_bits x,
-                                      struct CELLIST_RECORD b, cellist_sort_bits y) {
+static inline int cellist_sort_before(global const struct CELLIST_RECORD* a, cellist_sort_bits x,
+                                      global const struct CELLIST_RECORD* b, cellist_sort_bits y) {
     return x != y ? x < y : cellist_record_before(a, b, 0);
 }
 
@@ -20,10 +20,11 @@ static inline uint cellist_sort_merge(CELLIST_LISTS(CELLIST_RECORD, lists), uint
                                       ulong most) {
     uint first = CELLIST_NONE;
     uint last = CELLIST_NONE;
-    cellist_sort_bits x = cellist_sort_key(cellist_get(lists, a));
-    cellist_sort_bits y = cellist_sort_key(cellist_get(lists, b));
+    cellist_sort_bits x = cellist_sort_key(&cellist_get(lists, a));
+    cellist_sort_bits y = cellist_sort_key(&cellist_get(lists, b));
     for (ulong step = 0; step < most; ++step) {
-        const int b_first = cellist_sort_before(cellist_get(lists, b), y, cellist_get(lists, a), x);
+        const int b_first =
+            cellist_sort_before(&cellist_get(lists, b), y, &cellist_get(lists, a), x);
         const uint least = b_first ? b : a;
         if (last == CELLIST_NONE)
             first = least;
@@ -34,9 +35,9 @@ static inline uint cellist_sort_merge(CELLIST_LISTS(CELLIST_RECORD, lists), uint
         const uint next = lists_nodes[least].next;
         if (next >= lists_view.capacity_nodes) break;
         if (b_first)
-            b = next, y = cellist_sort_key(cellist_get(lists, b));
+            b = next, y = cellist_sort_key(&cellist_get(lists, b));
         else
-            a = next, x = cellist_sort_key(cellist_get(lists, a));
+            a = next, x = cellist_sort_key(&cellist_get(lists, a));
     }
     // One list has ended with `last`; the rest of the other follows.
     lists_nodes[last].next = last == b ? a : b;
@@ -73,21 +74,31 @@ static inline void cellist_sort_cell(CELLIST_LISTS(CELLIST_RECORD, lists), uint 
 
 #else
 
-static inline int cellist_sort_first(struct CELLIST_RECORD a, struct CELLIST_RECORD b) {
+static inline int cellist_sort_first(global const struct CELLIST_RECORD* a,
+                                     global const struct CELLIST_RECORD* b) {
     return cellist_sort_before(a, cellist_sort_key(a), b, cellist_sort_key(b));
 }
 
-// Lets `record` sink from position `at` in the heap of `length` records: the last comes first.
-static inline void cellist_sort_sift(global struct CELLIST_RECORD* records, uint at, uint length,
-                                     struct CELLIST_RECORD record) {
+static inline void cellist_sort_swap(global struct CELLIST_RECORD* a,
+                                     global struct CELLIST_RECORD* b) {
+    global cellist_sort_piece* x = (global cellist_sort_piece*)a;
+    global cellist_sort_piece* y = (global cellist_sort_piece*)b;
+    for (uint i = 0; i < CELLIST_SORT_PIECES; ++i) {
+        const cellist_sort_piece moved = x[i];
+        x[i] = y[i];
+        y[i] = moved;
+    }
+}
+
+// Lets the record at `at` sink in the heap of `length` records: the last comes first.
+static inline void cellist_sort_sift(global struct CELLIST_RECORD* records, uint at, uint length) {
     while (at < length / 2) {
         uint child = 2 * at + 1;
-        if (child + 1 < length && cellist_sort_first(records[child], records[child + 1])) ++child;
-        if (!cellist_sort_first(record, records[child])) break;
-        records[at] = records[child];
+        if (child + 1 < length && cellist_sort_first(&records[child], &records[child + 1])) ++child;
+        if (!cellist_sort_first(&records[at], &records[child])) break;
+        cellist_sort_swap(&records[at], &records[child]);
         at = child;
     }
-    records[at] = record;
 }
 
 static inline void cellist_sort_cell(CELLIST_LISTS(CELLIST_RECORD, lists), uint cell) {
@@ -95,11 +106,10 @@ static inline void cellist_sort_cell(CELLIST_LISTS(CELLIST_RECORD, lists), uint 
     if (length < 2) return;
     global struct CELLIST_RECORD* records =
         &cellist_get(lists, cellist_begin(lists_heads, lists_view, cell));
-    for (uint i = length / 2; i > 0; --i) cellist_sort_sift(records, i - 1, length, records[i - 1]);
+    for (uint i = length / 2; i > 0; --i) cellist_sort_sift(records, i - 1, length);
     for (uint end = length - 1; end > 0; --end) {
-        const struct CELLIST_RECORD last = records[end];
-        records[end] = records[0];
-        cellist_sort_sift(records, 0, end, last);
+        cellist_sort_swap(&records[0], &records[end]);
+        cellist_sort_sift(records, 0, end);
     }
 }
 

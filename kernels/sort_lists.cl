@@ -6,7 +6,7 @@
 //
 //   cells     count    the cells to sort; all, from 0 on, if `listed` is 0
 //   longer    longer_end   out: cells with longer lists, as many as state->longer[stage] says
-//   state     1        in and out
+//   state     1        in and out; among others the nodes of the lists, and how many lists are broken
 //   heads     cells    out: heads of the lists that move
 //   nodes     capacity_nodes   out: their nodes
 //
@@ -33,6 +33,7 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
     CELLIST_SORT_SHARED cellist_sort_bits keys[CELLIST_SORT_LISTS * CELLIST_SORT_STRIDE];
     CELLIST_SORT_SHARED uchar order[CELLIST_SORT_LISTS * CELLIST_SORT_STRIDE];
     CELLIST_SORT_SHARED uint sums[CELLIST_SORT_LISTS];
+    CELLIST_SORT_SHARED uint total;  // nodes of the lists
 #if CELLIST_SORT_ITEMS > 1
     local uint in_class[CELLIST_SORT_CLASSES];
 #endif
@@ -43,6 +44,7 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
 #define CELLIST_SORT_CELL(list) (listed ? cells[begin + (list)] : (uint)begin + (list))
 
     for (uint i = item; i < CELLIST_SORT_LISTS; i += CELLIST_SORT_ITEMS) sums[i] = 0;
+    if (item == 0) total = 0;
 #if CELLIST_SORT_ITEMS > 1
     for (uint i = item; i < CELLIST_SORT_CLASSES; i += CELLIST_SORT_ITEMS) in_class[i] = 0;
 #endif
@@ -52,13 +54,11 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
     CELLIST_SORT_SHARED uint next[CELLIST_SORT_LISTS];
     CELLIST_SORT_SHARED uint lengths[CELLIST_SORT_LISTS];
     CELLIST_SORT_SHARED uint firsts[CELLIST_SORT_LISTS];
-    CELLIST_SORT_SHARED uint total;
     CELLIST_SORT_SHARED uint base;
     for (uint i = item; i < own; i += CELLIST_SORT_ITEMS) {
         next[i] = lists_heads[CELLIST_SORT_CELL(i)];
         lengths[i] = 0;
     }
-    if (item == 0) total = 0;
     // One node of each list at a time: a work-item waits for all of its lists together.
     for (uint step = 0; step < CELLIST_SORT_SLOTS; ++step) {
         uint more = 0;
@@ -78,6 +78,7 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
             cellist_sort_leave(longer, longer_end, stage, CELLIST_SORT_CELL(i), state);
             lengths[i] = CELLIST_NONE;
         } else {
+            if (next[i] != CELLIST_NONE) atomic_inc(&state->broken);
             firsts[i] = cellist_sort_add(&total, lengths[i]);
         }
     }
@@ -90,8 +91,8 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
             total = CELLIST_NONE;
         }
     }
-    cellist_sort_barrier();
 #endif
+    cellist_sort_barrier();
 
     for (uint round = 0; round < CELLIST_SORT_LISTS / CELLIST_SORT_TEAMS; ++round) {
         const uint list = item / CELLIST_SORT_TEAM + round * CELLIST_SORT_TEAMS;
@@ -105,20 +106,23 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
                 heads[CELLIST_SORT_CELL(list)] = length > 0 ? base + firsts[list] : CELLIST_NONE;
         }
         for (uint i = member; i < length; i += CELLIST_SORT_TEAM)
-            keys[row + i] = cellist_sort_key(cellist_sort_record(own_nodes[index[row + i]]));
+            keys[row + i] = cellist_sort_key(&cellist_sort_record(own_nodes[index[row + i]]));
 #else
         uint first = 0;
         if (list < own) {
             const uint cell = CELLIST_SORT_CELL(list);
             first = cellist_begin(lists_heads, lists_view, cell);
             length = cellist_sort_length(lists_heads, lists_view, cell);
+            const int is_broken = cellist_sort_is_broken(lists_heads, lists_view, cell);
             if (length > CELLIST_SORT_SLOTS) {
                 length = 0;
                 if (member == 0) cellist_sort_leave(longer, longer_end, stage, cell, state);
             }
+            if (member == 0 && is_broken) atomic_inc(&state->broken);
+            if (member == 0 && length > 0) cellist_sort_add(&total, length);
         }
         for (uint i = member; i < length; i += CELLIST_SORT_TEAM)
-            keys[row + i] = cellist_sort_key(cellist_sort_record(own_nodes[first + i]));
+            keys[row + i] = cellist_sort_key(&cellist_sort_record(own_nodes[first + i]));
 #endif
         cellist_sort_barrier();
         uint places[CELLIST_SORT_RUNS * CELLIST_SORT_WIDTH];
@@ -142,22 +146,17 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
         for (uint i = member; i < length; i += CELLIST_SORT_TEAM) {
             const uint at = base + firsts[list];
             cellist_sort_store(nodes, at + i, at + length - 1,
-                               own_nodes[index[row + order[row + i]]]);
+                               &own_nodes[index[row + order[row + i]]]);
         }
 #else
-        cellist_sort_node moved[CELLIST_SORT_SLOTS / CELLIST_SORT_TEAM];
-        for (uint i = 0;
-             i < CELLIST_SORT_SLOTS / CELLIST_SORT_TEAM && member + i * CELLIST_SORT_TEAM < length;
-             ++i)
-            moved[i] = own_nodes[first + order[row + member + i * CELLIST_SORT_TEAM]];
-        cellist_sort_barrier();
-        for (uint i = 0;
-             i < CELLIST_SORT_SLOTS / CELLIST_SORT_TEAM && member + i * CELLIST_SORT_TEAM < length;
-             ++i)
-            own_nodes[first + member + i * CELLIST_SORT_TEAM] = moved[i];
+        cellist_sort_permute(own_nodes, first, 0, length, member, order + row);
 #endif
     }
 
+#if CELLIST_MODES != CELLIST_LINKED
+    cellist_sort_barrier();
+    if (item == 0 && total > 0) atomic_add(&state->nodes, total);
+#endif
 #if CELLIST_SORT_ITEMS > 1
     for (uint i = item; i < CELLIST_SORT_CLASSES; i += CELLIST_SORT_ITEMS)
         if (in_class[i] > 0) atomic_add(&state->in_class[i], in_class[i]);

@@ -17,6 +17,10 @@
 //   nodes    capacity_nodes       their nodes
 //   from, to capacity_nodes       the pools; every second pass goes from the one that holds the lists to
 //                                 the other
+//   keys     capacity_nodes       the key of each node of the lists, if CELLIST_SORT_KEEPS_KEYS is not 0;
+//                                 keys_from and keys_to go with the pools. Work-items that merge parts of
+//                                 a list must agree on where these end: an expression whose value changes
+//                                 from call to call is evaluated once a record
 //
 // A list that lies in one piece stays a list between any two of these kernels. Every loop is bounded, and
 // no link leads outside of the pool, whatever the links are.
@@ -81,6 +85,8 @@ kernel void cellist_sort_measure(CELLIST_LISTS(CELLIST_RECORD, lists), global co
             behind = cellist_sort_is_splitter(lists_view, next[i])
                          ? next[i] >> CELLIST_SORT_PART_BITS
                          : CELLIST_SORT_BROKEN;
+        else if (next[i] != CELLIST_NONE)
+            behind = CELLIST_SORT_BROKEN;
         parts[begin + i] = (uint2)(lengths[i], behind);
     }
 }
@@ -123,6 +129,7 @@ kernel void cellist_sort_place(CELLIST_LISTS(CELLIST_RECORD, lists), global cons
 #else
     list.length = cellist_sort_length(lists_heads, lists_view, cell);
     list.first = cellist_begin(lists_heads, lists_view, cell);
+    atomic_add(&state->nodes, list.length);
 #endif
     const uint chunks = (list.length + (CELLIST_SORT_SLOTS - 1)) / CELLIST_SORT_SLOTS;
     list.chunk = atomic_add(&state->chunks, chunks);
@@ -174,7 +181,7 @@ kernel void cellist_sort_collect(CELLIST_LISTS(CELLIST_RECORD, lists), global co
             if (node >= lists_view.capacity_nodes || at[i] == ends[i]) continue;
             next[i] = lists_nodes[node].next;
             cellist_sort_store(nodes, at[i], lasts[i],
-                               ((global const cellist_sort_node*)lists_nodes)[node]);
+                               (global const cellist_sort_node*)lists_nodes + node);
             ++at[i];
             more = 1;
         }
@@ -199,10 +206,18 @@ kernel void cellist_sort_allocate(CELLIST_LISTS(CELLIST_RECORD, lists), uint sto
 
 #endif
 
+// The key of node i.
+#if CELLIST_SORT_KEEPS_KEYS
+#define cellist_sort_key_of(nodes, keys, i) ((keys)[i])
+#else
+#define cellist_sort_key_of(nodes, keys, i) cellist_sort_key(&cellist_sort_record((nodes)[i]))
+#endif
+
 // Sorts each chunk; CELLIST_SORT_ITEMS work-items a chunk.
 CELLIST_SORT_KERNEL cellist_sort_chunks(global const cellist_sort_long* longs,
                                         global const uint* owners, uint chunks,
-                                        global cellist_sort_node* nodes) {
+                                        global cellist_sort_node* nodes,
+                                        global cellist_sort_bits* kept_keys) {
     CELLIST_SORT_SHARED cellist_sort_bits keys[CELLIST_SORT_SLOTS];
     CELLIST_SORT_SHARED uchar order[CELLIST_SORT_SLOTS];
     CELLIST_SORT_SHARED uint sum;
@@ -220,7 +235,7 @@ CELLIST_SORT_KERNEL cellist_sort_chunks(global const cellist_sort_long* longs,
     }
     if (item == 0) sum = 0;
     for (uint i = item; i < length; i += CELLIST_SORT_ITEMS)
-        keys[i] = cellist_sort_key(cellist_sort_record(nodes[first + i]));
+        keys[i] = cellist_sort_key(&cellist_sort_record(nodes[first + i]));
     cellist_sort_barrier();
     uint places[CELLIST_SORT_RUNS * CELLIST_SORT_WIDTH];
     cellist_sort_add(&sum, cellist_sort_rank(keys, length, item, places));
@@ -230,39 +245,36 @@ CELLIST_SORT_KERNEL cellist_sort_chunks(global const cellist_sort_long* longs,
     else
         cellist_sort_order_equal(nodes, first, 0, keys, length, item, order);
     cellist_sort_barrier();
-    cellist_sort_node moved[CELLIST_SORT_SLOTS / CELLIST_SORT_ITEMS];
-    for (uint i = 0;
-         i < CELLIST_SORT_SLOTS / CELLIST_SORT_ITEMS && item + i * CELLIST_SORT_ITEMS < length; ++i)
-        moved[i] = nodes[first + order[item + i * CELLIST_SORT_ITEMS]];
-    cellist_sort_barrier();
-    for (uint i = 0;
-         i < CELLIST_SORT_SLOTS / CELLIST_SORT_ITEMS && item + i * CELLIST_SORT_ITEMS < length; ++i)
-        cellist_sort_store(nodes, first + item + i * CELLIST_SORT_ITEMS, last, moved[i]);
+#if CELLIST_SORT_KEEPS_KEYS
+    for (uint i = item; i < length; i += CELLIST_SORT_ITEMS) kept_keys[first + i] = keys[order[i]];
+#endif
+    cellist_sort_permute(nodes, first, last, length, item, order);
 }
 
 // Whether node a, with key x, comes before node b, with key y.
 static inline uint cellist_sort_before(global const cellist_sort_node* a, cellist_sort_bits x,
                                        global const cellist_sort_node* b, cellist_sort_bits y) {
     if (x != y) return x < y;
-    return cellist_record_before(cellist_sort_record(*a), cellist_sort_record(*b), 0);
+    return cellist_record_before(&cellist_sort_record(*a), &cellist_sort_record(*b), 0);
 }
 
 // How many of the first `taken` nodes of two sorted runs together are of the first run (Odeh, Green,
-// Mwassi, Shmueli, Birk: "Merge Path", IPDPSW 2012).
-static inline uint cellist_sort_split(global const cellist_sort_node* a, uint a_length,
-                                      global const cellist_sort_node* b, uint b_length,
-                                      uint taken) {
-    uint least = taken > b_length ? taken - b_length : 0;
-    uint most = min(taken, a_length);
+// Mwassi, Shmueli, Birk: "Merge Path", IPDPSW 2012). The runs are nodes first ... middle - 1 and
+// middle ... end - 1.
+static inline uint cellist_sort_split(global const cellist_sort_node* nodes,
+                                      global const cellist_sort_bits* keys, uint first, uint middle,
+                                      uint end, uint taken) {
+    uint least = taken > end - middle ? taken - (end - middle) : 0;
+    uint most = min(taken, middle - first);
     while (least < most) {
-        const uint middle = least + (most - least) / 2;
-        global const cellist_sort_node* x = a + middle;
-        global const cellist_sort_node* y = b + (taken - 1 - middle);
-        if (cellist_sort_before(y, cellist_sort_key(cellist_sort_record(*y)), x,
-                                cellist_sort_key(cellist_sort_record(*x))))
-            most = middle;
+        const uint probe = least + (most - least) / 2;
+        const uint x = first + probe;
+        const uint y = middle + (taken - 1 - probe);
+        if (cellist_sort_before(&nodes[y], cellist_sort_key_of(nodes, keys, y), &nodes[x],
+                                cellist_sort_key_of(nodes, keys, x)))
+            most = probe;
         else
-            least = middle + 1;
+            least = probe + 1;
     }
     return least;
 }
@@ -271,7 +283,9 @@ static inline uint cellist_sort_split(global const cellist_sort_node* a, uint a_
 // of two.
 kernel void cellist_sort_merge(global const cellist_sort_long* longs, global const uint* owners,
                                uint chunks, global const cellist_sort_node* from,
-                               global cellist_sort_node* to, uint run) {
+                               global cellist_sort_node* to, uint run,
+                               global const cellist_sort_bits* keys_from,
+                               global cellist_sort_bits* keys_to) {
     const uint per_chunk = max(CELLIST_SORT_SLOTS / CELLIST_SORT_SHARE, 1);
     const ulong item = get_global_id(0);
     if (item >= (ulong)chunks * per_chunk) return;
@@ -282,13 +296,14 @@ kernel void cellist_sort_merge(global const cellist_sort_long* longs, global con
     if (run >= list.length || begin >= list.length || begin % CELLIST_SORT_SHARE != 0) return;
     const uint end = min(list.length - begin, (uint)CELLIST_SORT_SHARE) + begin;
     from += list.first;
+    keys_from += list.first;
+    keys_to += list.first;
 
     for (uint at = begin; at < end;) {
         const uint first = (uint)(at - at % (2 * (ulong)run));
         const uint a_end = first + min(list.length - first, run);
         const uint b_end = a_end + min(list.length - a_end, run);
-        uint a = first + cellist_sort_split(from + first, a_end - first, from + a_end,
-                                            b_end - a_end, at - first);
+        uint a = first + cellist_sort_split(from, keys_from, first, a_end, b_end, at - first);
         uint b = a_end + at - a;
         const uint stop = min(end, b_end);
         // As many steps at a time as neither run ends in. They compute instead of branching: no
@@ -296,19 +311,26 @@ kernel void cellist_sort_merge(global const cellist_sort_long* longs, global con
         while (at < stop && a < a_end && b < b_end) {
             const uint last = at + min(stop - at, min(a_end - a, b_end - b));
             for (; at < last; ++at) {
-                const cellist_sort_bits x = cellist_sort_key(cellist_sort_record(from[a]));
-                const cellist_sort_bits y = cellist_sort_key(cellist_sort_record(from[b]));
+                const cellist_sort_bits x = cellist_sort_key_of(from, keys_from, a);
+                const cellist_sort_bits y = cellist_sort_key_of(from, keys_from, b);
                 uint b_first = y < x;
                 if (x == y) b_first = cellist_sort_before(&from[b], y, &from[a], x);
                 cellist_sort_store(to, list.first + at, list.first + list.length - 1,
-                                   from[a + ((b - a) & (0 - b_first))]);
+                                   &from[a + ((b - a) & (0 - b_first))]);
+#if CELLIST_SORT_KEEPS_KEYS
+                keys_to[at] = b_first ? y : x;
+#endif
                 a += 1 - b_first;
                 b += b_first;
             }
         }
-        for (; at < stop; ++at)
-            cellist_sort_store(to, list.first + at, list.first + list.length - 1,
-                               from[a < a_end ? a++ : b++]);
+        for (; at < stop; ++at) {
+            const uint next = a < a_end ? a++ : b++;
+            cellist_sort_store(to, list.first + at, list.first + list.length - 1, &from[next]);
+#if CELLIST_SORT_KEEPS_KEYS
+            keys_to[at] = keys_from[next];
+#endif
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 //
 //   count       records of each list that are brought to its front, at most CELLIST_SORT_FRONT
 //   length_max  lists of more nodes are left as they are, and counted in state->longer[0]
+//   state       also counts the nodes, and the lists that end outside of the pool
 //
 // Links and offsets stay as they are, records move: those that come first to the first nodes of the list,
 // and those that were there to where these come from. A work-item has CELLIST_SORT_LISTS lists.
@@ -19,14 +20,14 @@ typedef struct cellist_sort_front {
 static inline void cellist_sort_take(CELLIST_LISTS(CELLIST_RECORD, lists),
                                      cellist_sort_front* front, uint count, uint number,
                                      uint node) {
-    const cellist_sort_bits key = cellist_sort_key(cellist_get(lists, node));
+    const cellist_sort_bits key = cellist_sort_key(&cellist_get(lists, node));
     if (number < count) front->places[number] = node;
     uint at = min(number, count);
     for (; at > 0; --at) {
         if (key > front->keys[at - 1]) break;
         if (key == front->keys[at - 1] &&
-            !cellist_record_before(cellist_get(lists, node),
-                                   cellist_get(lists, front->nodes[at - 1]), 0))
+            !cellist_record_before(&cellist_get(lists, node),
+                                   &cellist_get(lists, front->nodes[at - 1]), 0))
             break;
         if (at == count) continue;
         front->keys[at] = front->keys[at - 1];
@@ -95,9 +96,12 @@ kernel void cellist_sort_partial(CELLIST_LISTS(CELLIST_RECORD, lists), uint coun
         }
         if (!more) break;
     }
+    uint nodes = 0;
+    for (uint i = 0; i < own; ++i) nodes += lengths[i];
+    if (nodes > 0) atomic_add(&state->nodes, nodes);
     for (uint i = 0; i < own; ++i) {
-        if (next[i] != ends[i] && next[i] < lists_view.capacity_nodes)
-            atomic_inc(&state->longer[0]);
+        if (next[i] != ends[i])
+            atomic_inc(next[i] < lists_view.capacity_nodes ? &state->longer[0] : &state->broken);
         else
             cellist_sort_move(CELLIST_PASS(lists), &fronts[i], min(lengths[i], count));
     }

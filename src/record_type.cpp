@@ -40,21 +40,55 @@ std::string layout_checks(const RecordType& record) {
     return text;
 }
 
-/// Whether record a comes before record b: by the member that `key` means, then by all members.
+/// Elements of arrays that are compared one by one: longer arrays take a loop, and compile as fast.
+constexpr std::size_t unrolled_max = 16;
+
+/// The scalars of each element of a member that is an array, after "name[i]"; none of other members.
+std::vector<std::string> element_scalars(const RecordMember& member, std::size_t& elements) {
+    elements = member.extents.empty() ? 0 : std::stoul(member.extents.substr(1));
+    if (elements <= unrolled_max) return {};
+    const std::size_t first = member.name.size() + std::string_view("[0]").size();
+    std::vector<std::string> parts;
+    for (std::size_t i = 0; i < member.scalars.size() / elements; ++i)
+        parts.push_back(member.scalars[i].substr(first));
+    return parts;
+}
+
+/// Whether record a comes before record b: by the member that `key` means, then by all members. One
+/// function takes records, the other pointers to records of any size that stay where they are.
 std::string order_definition(const RecordType& record) {
-    std::string text = "static inline int CELLIST_OVERLOAD cellist_record_before(struct " +
-                       record.name + " a, struct " + record.name +
-                       " b, uint key)\n{\n    ulong x = 0, y = 0;\n" + "    switch (key) {\n";
-    for (const RecordMember& member : record.members)
-        if (member.is_scalar)
-            text += "    case cellist_key_" + member.name + ": x = cellist_order(a." + member.name +
-                    "), y = cellist_order(b." + member.name + "); break;\n";
-    text += "    default: break;\n    }\n    if (x != y) return x < y;\n";
-    for (const RecordMember& member : record.members)
-        for (const std::string& path : member.scalars)
-            text += "    x = cellist_order(a." + path + "), y = cellist_order(b." + path +
-                    ");\n    if (x != y) return x < y;\n";
-    return text + "    return 0;\n}\n";
+    const auto define = [&](const std::string& type, const std::string& access) {
+        const auto compare = [&](const std::string& path) {
+            return "x = cellist_order(a" + access + path + "), y = cellist_order(b" + access +
+                   path + ");";
+        };
+        std::string text = "static inline int CELLIST_OVERLOAD cellist_record_before(" + type +
+                           " a, " + type +
+                           " b, uint key)\n{\n    ulong x = 0, y = 0;\n    switch (key) {\n";
+        for (const RecordMember& member : record.members)
+            if (member.is_scalar)
+                text += "    case cellist_key_" + member.name + ": " + compare(member.name) +
+                        " break;\n";
+        text += "    default: break;\n    }\n    if (x != y) return x < y;\n";
+        for (const RecordMember& member : record.members) {
+            std::size_t elements = 0;
+            const std::vector<std::string> parts = element_scalars(member, elements);
+            if (!parts.empty())
+                text += "    for (uint i = 0; i < " + std::to_string(elements) + "u; ++i) {\n";
+            for (const std::string& part : parts)
+                text += "    " + compare(member.name + "[i]" + part) +
+                        "\n    if (x != y) return x < y;\n";
+            if (!parts.empty()) {
+                text += "    }\n";
+                continue;
+            }
+            for (const std::string& path : member.scalars)
+                text += "    " + compare(path) + "\n    if (x != y) return x < y;\n";
+        }
+        return text + "    return 0;\n}\n";
+    };
+    return define("struct " + record.name, ".") +
+           define("global const struct " + record.name + "*", "->");
 }
 
 /// The words by which a record is ranked, and their number: those of a member, then those of all.

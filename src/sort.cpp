@@ -1,6 +1,7 @@
 #include "sort.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <numeric>
 
 #include "cellist_kernels.hpp"
@@ -11,6 +12,9 @@ namespace {
 
 /// Nodes of the pool for one splitter of long linked lists; see sort_long.cl.
 constexpr unsigned part_bits = 9;
+
+/// Keys whose kernels are kept for the next sort.
+constexpr std::size_t keys_max = 8;
 
 /// Longest list whose first nodes are looked for by one work-item.
 constexpr cl_uint front_length_max = 4096;
@@ -34,6 +38,32 @@ std::string define(const char* name, unsigned value) {
     return std::string("#define CELLIST_SORT_") + name + " " + std::to_string(value) + "\n";
 }
 
+bool in_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+
+/// Whether a key is the value of a member: the same whenever it is read.
+bool is_member(const SortKey& key) {
+    constexpr std::string_view prefix = "record.";
+    return key.expression.starts_with(prefix) &&
+           std::all_of(key.expression.begin() + prefix.size(), key.expression.end(), in_name);
+}
+
+/// An expression of `record` as one of the record that a pointer leads to. A private copy of a large
+/// record would take too much memory.
+std::string of_pointer(std::string_view expression) {
+    std::string text;
+    char before = ' ';  // the last character that is no blank
+    for (std::size_t at = 0; at < expression.size();) {
+        std::size_t end = at + 1;
+        if (in_name(expression[at]))
+            while (end < expression.size() && in_name(expression[end])) ++end;
+        const std::string_view part = expression.substr(at, end - at);
+        text += part == "record" && before != '.' ? "(*cellist_sort_at)" : std::string(part);
+        if (std::isspace(static_cast<unsigned char>(part.back())) == 0) before = part.back();
+        at = end;
+    }
+    return text;
+}
+
 /// Defines cellist_sort_key.
 std::string key_function(const SortKey& key) {
     const std::string type = key.bits == 32 ? "uint" : "ulong";
@@ -44,19 +74,38 @@ std::string key_function(const SortKey& key) {
            "#pragma clang diagnostic error \"-Warray-bounds\"\n#endif\n"
            "#line 1 \"sort expression\"\n"
            "static inline " +
-           type + " cellist_sort_key(struct CELLIST_RECORD record) { return (" + type + ")" +
-           (key.order == Order::descending ? "~" : "") +
-           "cellist_order(\n#line 1 \"sort expression\"\n" + key.expression +
+           type +
+           " cellist_sort_key(global const struct CELLIST_RECORD* cellist_sort_at) { return (" +
+           type + ")" + (key.order == Order::descending ? "~" : "") +
+           "cellist_order(\n#line 1 \"sort expression\"\n" + of_pointer(key.expression) +
            "\n); }\n#ifdef __clang__\n#pragma clang diagnostic pop\n#endif\n";
 }
 
-std::string source_text(const KernelFile& file, const std::string& record, const SortKey& key,
-                        const SortTuning& tuning) {
-    std::string text = "#define CELLIST_RECORD " + record + "\n" + define("KEY_BITS", key.bits) +
+/// The type in whose size nodes move: of the widest vector that divides a node. Empty for nodes of which a
+/// work-item has room for some hundred.
+std::string piece_type(std::size_t node_bytes) {
+    constexpr std::size_t whole_max = 256;
+    if (node_bytes <= whole_max) return {};
+    const char* const types[] = {"ulong16", "ulong8", "ulong4", "ulong2",
+                                 "ulong",   "uint",   "ushort", "uchar"};
+    std::size_t bytes = 128;
+    for (const char* const type : types) {
+        if (node_bytes % bytes == 0) return type;
+        bytes /= 2;
+    }
+    return {};
+}
+
+std::string source_text(const KernelFile& file, const RecordType& record, bool linked,
+                        const SortKey& key, const SortTuning& tuning) {
+    const std::string piece = piece_type(linked ? node_layout(record).size : record.size);
+    std::string text = "#define CELLIST_RECORD " + record.name + "\n" +
+                       define("KEY_BITS", key.bits) + define("KEEPS_KEYS", is_member(key) ? 0 : 1) +
                        define("SLOTS", tuning.slots) + define("WIDTH", tuning.width) +
                        define("ITEMS", tuning.items) + define("TEAM", tuning.team) +
                        define("LISTS", tuning.lists) + define("SHARE", tuning.share) +
                        define("FRONT", tuning.front) + define("PART_BITS", part_bits) +
+                       (piece.empty() ? "" : "#define CELLIST_SORT_PIECE " + piece + "\n") +
                        "#line 1 \"sort.cl\"\n";
     text += kernels::sort_cl;
     text += key_function(key) + "#line 1 \"" + file.name + "\"\n";
@@ -66,7 +115,7 @@ std::string source_text(const KernelFile& file, const std::string& record, const
 
 }  // namespace
 
-ListSorter::ListSorter(std::shared_ptr<DeviceState> device, Definitions definitions)
+ListSorter::ListSorter(MemoryOwner device, Definitions definitions)
     : device_(std::move(device)),
       definitions_(std::move(definitions)),
       device_type_(device_->info.type),
@@ -74,13 +123,27 @@ ListSorter::ListSorter(std::shared_ptr<DeviceState> device, Definitions definiti
       cells_{Memory(device_, 1, sizeof(cl_uint), "cells with long lists"),
              Memory(device_, 1, sizeof(cl_uint), "cells with long lists")} {}
 
+ListSorter::Kernels& ListSorter::kernels_of(const SortKey& key) {
+    const auto known = std::find_if(kernels_.begin(), kernels_.end(),
+                                    [&](const auto& entry) { return entry.first == key; });
+    if (known != kernels_.end()) {
+        kernels_.splice(kernels_.begin(), kernels_, known);
+    } else {
+        kernels_.emplace_front(key, Kernels());
+        if (kernels_.size() > keys_max) kernels_.pop_back();
+    }
+    return kernels_.front().second;
+}
+
 Kernel& ListSorter::kernel(const KernelFile& file, const char* name, const Sort& sort,
                            const SortTuning& tuning) {
-    const std::tuple id(std::string(name), sort.storage.mode(), sort.key, tuning);
-    if (const auto known = kernels_.find(id); known != kernels_.end()) return known->second;
+    Kernels& kernels = kernels_of(sort.key);
+    const std::tuple id(std::string(name), sort.storage.mode(), tuning);
+    if (const auto known = kernels.find(id); known != kernels.end()) return known->second;
     definitions_.modes = sort.storage.mode();
-    const std::string text = source_text(file, definitions_.records.back().name, sort.key, tuning);
-    return kernels_.emplace(id, Kernel(device_, Source{.text = text}, name, definitions_))
+    const std::string text =
+        source_text(file, definitions_.records.back(), sort.linked, sort.key, tuning);
+    return kernels.emplace(id, Kernel(device_, Source{.text = text}, name, definitions_))
         .first->second;
 }
 
@@ -92,16 +155,31 @@ void ListSorter::clear_state() {
 void ListSorter::read_state(Sort& sort) const {
     state_.read(&sort.state, sizeof sort.state);
     if (sort.state.broken > 0)
-        throw Error(
-            "lists cannot be sorted: links lead in circles, or from several lists to the "
-            "same nodes (Lists::validate() finds them); the lists are as they were");
+        throw Error(sort.linked
+                        ? "lists cannot be sorted: links lead out of the pool, in circles, or from "
+                          "several lists to the same nodes (Lists::validate() finds them)"
+                        : "lists cannot be sorted: some end before they begin, or after the pool "
+                          "(Lists::validate() finds them)");
+}
+
+/// Throws Error where the lists do not have as many nodes as the last build has left.
+void ListSorter::check_nodes(const Sort& sort) const {
+    if (sort.state.nodes == sort.storage.stored()) return;
+    throw Error("lists cannot be sorted: they have " + std::to_string(sort.state.nodes) +
+                " nodes instead of " + std::to_string(sort.storage.stored()) +
+                " (Lists::validate() finds why)");
+}
+
+/// Whether a sort may take so much more memory.
+bool ListSorter::has_room_for(const Sort& sort, std::uint64_t more_bytes) const {
+    return sort.storage.has_room_for(sort.storage.bytes() + device_.bytes() + more_bytes);
 }
 
 ListSorter::Sort ListSorter::sort_of(ListStorage& storage, const SortKey& key) const {
     const bool linked = storage.mode() == CELLIST_LINKED;
     return {.storage = storage,
             .key = key,
-            .plan = SortPlan(device_type_, linked, definitions_.records.back().size),
+            .plan = SortPlan(device_type_, device_->info, linked, definitions_.records.back().size),
             .linked = linked,
             .count = storage.cells()};
 }
@@ -111,11 +189,15 @@ cl::Event ListSorter::sort(ListStorage& storage, const SortKey& key, std::uint32
     Sort sort = sort_of(storage, key);
     if (bring_to_front(sort, front)) return std::move(sort.done);
     if (sort.linked && storage.spare() == nullptr) return sort_in_place(storage, key);
+    if (!has_room_for(sort, 2 * most_left(sort) * sizeof(cl_uint)))
+        return sort_in_place(storage, key);
     sort_classes(sort);
-    if (sort.count > 0)
+    if (sort.count > 0) {
         sort_long(sort);
-    else if (sort.linked)
-        adopt(sort);
+    } else {
+        check_nodes(sort);
+        if (sort.linked) adopt(sort);
+    }
     return std::move(sort.done);
 }
 
@@ -147,7 +229,9 @@ bool ListSorter::bring_to_front(Sort& sort, std::uint32_t front) {
         .enqueue(Range::padded((sort.count + tuning.lists - 1) / tuning.lists, 64),
                  arguments_of(sort.storage, front, front_length_max, state_.cl()), &sort.done);
     read_state(sort);
-    return sort.state.longer[0] == 0;
+    if (sort.state.longer[0] > 0) return false;
+    check_nodes(sort);
+    return true;
 }
 
 /// The least class that has room for nearly all lists: by the last sort, or by the mean length.
@@ -179,6 +263,12 @@ void ListSorter::sort_classes(Sort& sort) {
     in_class_.back() += static_cast<cl_uint>(sort.count);
 }
 
+/// Lists that the first class leaves, at most: sound ones are longer than it.
+std::uint64_t ListSorter::most_left(const Sort& sort) const {
+    const SortTuning tuning = sort.plan.of_class(first_class(sort));
+    return std::min<std::uint64_t>(sort.count, sort.storage.pool_nodes() / (tuning.slots + 1));
+}
+
 /// Sorts a class of the lists that are left, and collects the cells of those that are longer.
 void ListSorter::sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage) {
     const ListStorage& storage = sort.storage;
@@ -208,16 +298,17 @@ void ListSorter::sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage)
 void ListSorter::sort_long(Sort& sort) {
     ListStorage& storage = sort.storage;
     const ListStorage::Spare* spare = storage.spare();
-    if (spare == nullptr) return sort_in_place(sort);
+    const std::optional<Keys> keys = spare != nullptr ? keys_of(sort) : std::nullopt;
+    if (!keys) return sort_in_place(sort);
     const SortTuning tuning = sort.plan.of_long_lists();
     const auto count = static_cast<cl_uint>(sort.count);
     const cl::Buffer& cells = sort.cells->cl();
-    const Memory longs(device_, count, sizeof(cellist_sort_long), "long lists");
+    const Memory longs(device_.state(), count, sizeof(cellist_sort_long), "long lists");
     const std::uint64_t owners_end = storage.pool_nodes() / tuning.slots + count;
-    const Memory owners(device_, owners_end, sizeof(cl_uint), "owners of chunks");
+    const Memory owners(device_.state(), owners_end, sizeof(cl_uint), "owners of chunks");
     const std::uint64_t part_count = sort.linked ? (storage.pool_nodes() >> part_bits) + count : 0;
-    const Memory parts(device_, part_count, sizeof(cl_uint2), "parts of lists");
-    Memory places(device_, part_count, sizeof(cl_uint2), "places of parts of lists");
+    const Memory parts(device_.state(), part_count, sizeof(cl_uint2), "parts of lists");
+    Memory places(device_.state(), part_count, sizeof(cl_uint2), "places of parts of lists");
     const Range walks = Range::padded((part_count + tuning.lists - 1) / tuning.lists,
                                       sort.plan.in_groups() ? 64 : 16);
 
@@ -238,12 +329,27 @@ void ListSorter::sort_long(Sort& sort) {
                  arguments_of(storage, cells, count, longs.cl(), parts.cl(), places.cl(),
                               spare->nodes.cl()));
     read_state(sort);
+    check_nodes(sort);
     if (sort.linked) adopt(sort);
-    merge(sort, longs, owners);
+    merge(sort, longs, owners, *keys);
+}
+
+/// None where there is no memory for them.
+std::optional<ListSorter::Keys> ListSorter::keys_of(const Sort& sort) const {
+    const std::uint64_t count = is_member(sort.key) ? 0 : sort.storage.pool_nodes();
+    const std::uint64_t bytes = count * sizeof(cl_ulong);
+    if (bytes > device_->info.max_allocation_bytes || !has_room_for(sort, 2 * bytes)) return {};
+    try {
+        return Keys{Memory(device_.state(), count, sizeof(cl_ulong), "keys"),
+                    Memory(device_.state(), count, sizeof(cl_ulong), "keys")};
+    } catch (const OpenClError& error) {
+        if (!out_of_memory(error)) throw;
+        return {};
+    }
 }
 
 /// Sorts long lists that lie in one piece each.
-void ListSorter::merge(Sort& sort, const Memory& longs, const Memory& owners) {
+void ListSorter::merge(Sort& sort, const Memory& longs, const Memory& owners, const Keys& keys) {
     const SortTuning tuning = sort.plan.of_long_lists();
     const cl_uint chunks = sort.state.chunks;
     const cl::Buffer& nodes = sort.storage.nodes();
@@ -251,18 +357,21 @@ void ListSorter::merge(Sort& sort, const Memory& longs, const Memory& owners) {
     run_long(
         sort, "cellist_sort_chunks",
         Range::padded(std::uint64_t{chunks} * tuning.items, tuning.items == 1 ? 16 : tuning.items),
-        arguments_of(longs.cl(), owners.cl(), chunks, nodes));
+        arguments_of(longs.cl(), owners.cl(), chunks, nodes, keys.of_pool.cl()));
 
     const unsigned shares = std::max(tuning.slots / tuning.share, 1u);
     const Range merges =
         Range::padded(std::uint64_t{chunks} * shares, sort.plan.in_groups() ? 128 : 16);
     const cl::Buffer* from = &nodes;
     const cl::Buffer* to = &spare;
+    const cl::Buffer* keys_from = &keys.of_pool.cl();
+    const cl::Buffer* keys_to = &keys.of_spare.cl();
     for (std::uint64_t run = tuning.slots; run < sort.state.longest; run *= 2) {
-        run_long(
-            sort, "cellist_sort_merge", merges,
-            arguments_of(longs.cl(), owners.cl(), chunks, *from, *to, static_cast<cl_uint>(run)));
+        run_long(sort, "cellist_sort_merge", merges,
+                 arguments_of(longs.cl(), owners.cl(), chunks, *from, *to,
+                              static_cast<cl_uint>(run), *keys_from, *keys_to));
         std::swap(from, to);
+        std::swap(keys_from, keys_to);
     }
     run_long(sort, "cellist_sort_return", Range::padded(std::uint64_t{chunks} * tuning.slots),
              arguments_of(longs.cl(), owners.cl(), chunks, spare, nodes));
@@ -278,10 +387,6 @@ void ListSorter::run_long(Sort& sort, const char* name, const Range& range,
 /// Puts the lists that have moved in the place of those that have not.
 void ListSorter::adopt(Sort& sort) {
     ListStorage& storage = sort.storage;
-    if (sort.state.nodes != storage.stored())
-        throw Error("lists cannot be sorted: they have " + std::to_string(sort.state.nodes) +
-                    " nodes instead of " + std::to_string(storage.stored()) +
-                    " (Lists::validate() finds why); the lists are as they were");
     if (storage.stored() < storage.pool_nodes())
         run_long(sort, "cellist_sort_allocate", Range::padded(storage.counters()),
                  arguments_of(storage, static_cast<cl_uint>(storage.stored())));

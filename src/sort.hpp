@@ -2,8 +2,10 @@
 
 #include <array>
 #include <cstdint>
+#include <list>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -30,11 +32,11 @@ struct KernelFile {
 /// list on its own; longer ones by all work-items together. Kernels are compiled when a list needs them.
 class ListSorter {
 public:
-    ListSorter(std::shared_ptr<DeviceState> device, Definitions definitions);
+    ListSorter(MemoryOwner device, Definitions definitions);
 
     /// Sorts all lists; `front` nodes of each at least, the others may follow in any order. Blocks until
-    /// it is known how long the lists are. Throws Error where links lead in circles. Whatever fails,
-    /// lists hold what they held, in some order.
+    /// it is known how long the lists are. Throws Error where links or offsets are not those of the last
+    /// build. Whatever fails, sound lists hold what they held, in some order.
     cl::Event sort(ListStorage& storage, const SortKey& key, std::uint32_t front);
     /// Sorts all lists in their places, one work-item a list. Does not block.
     cl::Event sort_in_place(ListStorage& storage, const SortKey& key);
@@ -61,22 +63,34 @@ private:
     void sort_classes(Sort& sort);
     void sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage);
     void sort_long(Sort& sort);
-    void merge(Sort& sort, const Memory& longs, const Memory& owners);
+    /// The keys of long lists, where their values must be kept: one buffer goes with the pool, the other
+    /// with the spare one.
+    struct Keys {
+        Memory of_pool;
+        Memory of_spare;
+    };
+    void merge(Sort& sort, const Memory& longs, const Memory& owners, const Keys& keys);
+    [[nodiscard]] std::optional<Keys> keys_of(const Sort& sort) const;
+    [[nodiscard]] bool has_room_for(const Sort& sort, std::uint64_t more_bytes) const;
     void run_long(Sort& sort, const char* name, const Range& range, const Arguments& arguments);
     void adopt(Sort& sort);
     [[nodiscard]] std::size_t first_class(const Sort& sort) const;
+    [[nodiscard]] std::uint64_t most_left(const Sort& sort) const;
 
     void clear_state();
     void read_state(Sort& sort) const;
+    void check_nodes(const Sort& sort) const;
+    using Kernels = std::map<std::tuple<std::string, cl_uint, SortTuning>, Kernel>;
+    [[nodiscard]] Kernels& kernels_of(const SortKey& key);
     Kernel& kernel(const KernelFile& file, const char* name, const Sort& sort,
                    const SortTuning& tuning);
 
-    std::shared_ptr<DeviceState> device_;
+    MemoryOwner device_;
     Definitions definitions_;
     cl_device_type device_type_;
     Memory state_;
-    std::array<Memory, 2> cells_;  ///< whose lists each class leaves, by turns
-    std::map<std::tuple<std::string, cl_uint, SortKey, SortTuning>, Kernel> kernels_;
+    std::array<Memory, 2> cells_;                     ///< whose lists each class leaves, by turns
+    std::list<std::pair<SortKey, Kernels>> kernels_;  ///< of the last keys, the latest first
     std::array<cl_uint, CELLIST_SORT_CLASSES> in_class_{};  ///< lists of the last sort
 };
 

@@ -9,31 +9,37 @@ namespace cellist::detail {
 
 namespace {
 
-/// Private memory for records that are sorted, and for those that are brought to the front of a list.
-constexpr std::size_t moved_bytes_max = 65536;
+/// Private memory for records that are brought to the front of a list.
 constexpr std::size_t front_bytes_max = 4096;
 constexpr std::uint32_t front_max = 64;
 
+/// Work-items that sort together, and the local memory that they take at most.
+constexpr std::size_t items_max = 128;
+constexpr std::size_t items_min = 64;
+constexpr std::size_t local_bytes = 16384;
+
 }  // namespace
+
+SortPlan::SortPlan(cl_device_type type, const DeviceInfo& limits, bool linked,
+                   std::size_t record_bytes)
+    : items_(static_cast<unsigned>(
+          std::min<std::size_t>(std::bit_floor(limits.max_work_group_size), items_max))),
+      in_groups_((type & CL_DEVICE_TYPE_GPU) != 0 && items_ >= items_min &&
+                 limits.local_memory_bytes >= local_bytes),
+      linked_(linked),
+      record_bytes_(record_bytes) {}
 
 std::size_t SortPlan::classes() const { return in_groups_ ? CELLIST_SORT_CLASSES - 1 : 1; }
 
 SortTuning SortPlan::of_class(std::size_t index) const {
     if (!in_groups_) {
         if (linked_) return {.slots = 256, .width = 8, .items = 1, .team = 1, .lists = 32};
-        return {.slots = slots_that_fit(256), .width = 8, .items = 1, .team = 1, .lists = 8};
+        return {.slots = 256, .width = 8, .items = 1, .team = 1, .lists = 8};
     }
     const unsigned slots = CELLIST_SORT_CLASS_MIN << index;
     const unsigned width = slots > 32 || (linked_ && index == 0) ? 8 : 4;
-    constexpr unsigned items = 128;
     const unsigned team = slots / width;
-    return {.slots = slots, .width = width, .items = items, .team = team, .lists = items / team};
-}
-
-/// Records that one work-item copies to private memory.
-unsigned SortPlan::slots_that_fit(unsigned most) const {
-    const std::size_t fit = std::bit_floor(moved_bytes_max / record_bytes_);
-    return static_cast<unsigned>(std::clamp<std::size_t>(fit, 8, most));
+    return {.slots = slots, .width = width, .items = items_, .team = team, .lists = items_ / team};
 }
 
 std::size_t SortPlan::class_for(std::uint64_t length) const {
@@ -45,12 +51,7 @@ std::size_t SortPlan::class_for(std::uint64_t length) const {
 SortTuning SortPlan::of_long_lists() const {
     if (in_groups_)
         return {.slots = 256, .width = 4, .items = 64, .team = 64, .lists = 1, .share = 2};
-    return {.slots = slots_that_fit(128),
-            .width = 8,
-            .items = 1,
-            .team = 1,
-            .lists = 32,
-            .share = 1024};
+    return {.slots = 128, .width = 8, .items = 1, .team = 1, .lists = 32, .share = 1024};
 }
 
 // On an EPYC under PoCL, the first 8 of 64 nodes are found in 0.8 times as long as the lists are sorted,

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <cellist/opencl.hpp>
+#include <cellist/device.hpp>
 
 namespace cellist::detail {
 
@@ -26,10 +26,8 @@ struct SortTuning {
 /// one work-item sorts several lists, and there is one class.
 class SortPlan {
 public:
-    SortPlan(cl_device_type type, bool linked, std::size_t record_bytes)
-        : in_groups_((type & CL_DEVICE_TYPE_GPU) != 0),
-          linked_(linked),
-          record_bytes_(record_bytes) {}
+    /// As on a device of a type with the limits of this one.
+    SortPlan(cl_device_type type, const DeviceInfo& limits, bool linked, std::size_t record_bytes);
 
     [[nodiscard]] bool in_groups() const { return in_groups_; }
     /// Classes of lists that are ranked; longer lists are merged.
@@ -45,8 +43,7 @@ public:
     [[nodiscard]] SortTuning of_front(std::uint32_t front) const;
 
 private:
-    [[nodiscard]] unsigned slots_that_fit(unsigned most) const;
-
+    unsigned items_;  ///< of a work-group
     bool in_groups_;
     bool linked_;
     std::size_t record_bytes_;
