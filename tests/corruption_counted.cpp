@@ -124,6 +124,29 @@ TEST_CASE("a last list that ends too early is found", "[corruption]") {
     corruption.require_found(Corruption::cells, {299, 271, 270});
 }
 
+TEST_CASE("a border that moves between two lists is found, dropped records or not",
+          "[corruption]") {
+    for (const cl_uint capacity : {75u, 100u}) {
+        // Lists of 10: of 75 nodes, cell 7 has 5, and cells 8 and 9 have none.
+        Lists<Item> lists(
+            device(), {10},
+            {.storage = Storage::counted, .overflow = Overflow::drop, .capacity_nodes = capacity});
+        Inserts<Item> inserts;
+        for (cl_uint i = 0; i < 100; ++i) inserts.add(i % 10, {1.0f, i});
+        Inserter(lists).build(lists, inserts);
+        Kernel set(device(), source, "set_word", lists);
+        for (cl_uint word = 0; word <= 10; ++word)
+            for (cl_uint bit = 0; bit < 32; ++bit) {
+                const cl_uint sound = std::min(word * 10, capacity);
+                INFO("bit " << bit << " of offset " << word);
+                set.run(1, lists, word, sound ^ (1u << bit));
+                REQUIRE_FALSE(lists.validate().ok());
+                set.run(1, lists, word, sound);
+            }
+        require_sound(lists, capacity);
+    }
+}
+
 TEST_CASE("scrambled offsets and counts are found and end", "[corruption]") {
     Corruption corruption;
     int tried = 0;

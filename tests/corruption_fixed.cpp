@@ -32,6 +32,8 @@ public:
         require_sound(lists, std::uint64_t{cells} * std::min(length, slots));
     }
 
+    void set(cl_uint cell, cl_uint count) { set_.run(1, lists, cell, count); }
+
     void require_found(cl_uint cell, cl_uint count) {
         INFO("count of cell " << cell << " set from " << length_ << " to " << count);
         set_.run(1, lists, cell, count);
@@ -69,6 +71,20 @@ TEST_CASE("counts that hide dropped records are found", "[corruption]") {
     FixedCorruption corruption(11);
     for (cl_uint cell = 0; cell < FixedCorruption::cells; ++cell)
         for (const cl_uint count : {0u, 7u, 8u, 10u}) corruption.require_found(cell, count);
+}
+
+TEST_CASE("counts that have moved between cells are found", "[corruption]") {
+    for (const cl_uint length : {5u, 11u}) {
+        FixedCorruption corruption(length);
+        corruption.set(2, length - 1);
+        corruption.set(7, length + 1);
+        const Validation found = corruption.lists.validate();
+        REQUIRE(found.broken_links > 0);
+        REQUIRE(found.lost_nodes + 1 <= 2);
+        corruption.set(2, length);
+        corruption.set(7, length);
+        REQUIRE(corruption.lists.validate().ok());
+    }
 }
 
 TEST_CASE("counts within the slots that are wrong are found", "[corruption]") {

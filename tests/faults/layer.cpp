@@ -25,6 +25,7 @@ namespace {
 struct Object {
     References::Kind kind;
     std::uint64_t references;
+    std::uint64_t bytes;  ///< of a buffer
 };
 
 std::mutex mutex;  ///< of everything that follows
@@ -57,8 +58,12 @@ Verdict next_call(const char* name, cl_int resources, cl_int object) {
 
 void created(const void* handle, References::Kind kind) {
     if (handle == nullptr) return;
+    std::size_t bytes = 0;
+    if (kind == References::buffer)
+        drivers.clGetMemObjectInfo(static_cast<cl_mem>(const_cast<void*>(handle)), CL_MEM_SIZE,
+                                   sizeof bytes, &bytes, nullptr);
     const std::lock_guard lock(mutex);
-    objects[handle] = {kind, 1};
+    objects[handle] = {kind, 1, bytes};
 }
 
 void retained(const void* handle) {
@@ -366,7 +371,10 @@ Pause::~Pause() {
 References references() {
     const std::lock_guard lock(mutex);
     References sum;
-    for (const auto& [handle, object] : objects) sum.held[object.kind] += object.references;
+    for (const auto& [handle, object] : objects) {
+        sum.held[object.kind] += object.references;
+        sum.buffer_bytes += object.bytes;
+    }
     sum.too_many_releases = too_many_releases;
     return sum;
 }
@@ -378,6 +386,7 @@ std::string References::to_string() const {
     for (std::size_t kind = 0; kind < kinds; ++kind)
         if (held[kind] != 0)
             text += (text.empty() ? "" : ", ") + std::to_string(held[kind]) + " " + names[kind];
+    if (buffer_bytes != 0) text += " of " + std::to_string(buffer_bytes) + " bytes";
     if (too_many_releases != 0)
         text += ", " + std::to_string(too_many_releases) + " releases too many";
     return text;

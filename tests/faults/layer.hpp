@@ -48,6 +48,7 @@ public:
 struct References {
     enum Kind { context, queue, program, kernel, buffer, image, sampler, event, kinds };
     std::array<std::uint64_t, kinds> held{};
+    std::uint64_t buffer_bytes = 0;  ///< of the buffers that are alive
     /// Releases of objects that the program had no reference to; the drivers never saw them.
     std::uint64_t too_many_releases = 0;
 
