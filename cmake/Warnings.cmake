@@ -24,6 +24,7 @@ target_compile_options(cellist_warnings INTERFACE
     # none (GCC bug 105651). In precompiled headers it forgets that the string is a system header.
     $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
     $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-stringop-overflow>
+    $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-array-bounds>
     $<$<BOOL:${CELLIST_WERROR}>:-Werror>)
 
 # g++ cannot see through its own instrumentation and reports std::regex and others as uninitialised

@@ -55,6 +55,22 @@ find_program(consumer consumer NO_DEFAULT_PATH NO_CACHE REQUIRED
 run("${consumer}")
 
 if(way STREQUAL "find_package")
+    find_program(nm nm)
+    find_program(host host NO_DEFAULT_PATH NO_CACHE PATHS "${work_dir}/build")
+    if(nm AND host)
+        run("${host}" "${work_dir}/build/libplugin.so")
+        # Templates of the standard library are weak, and every library may have them.
+        execute_process(COMMAND "${nm}" -DC --defined-only "${work_dir}/build/libplugin.so"
+            OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
+        string(REGEX MATCHALL "[^\n]+" symbols "${symbols}")
+        foreach(symbol IN LISTS symbols)
+            if((symbol MATCHES " [A-TX-Z] " OR symbol MATCHES "cellist|cl::")
+               AND NOT symbol MATCHES " T plugin_throw$")
+                message(FATAL_ERROR "the plug-in exports `${symbol}`")
+            endif()
+        endforeach()
+    endif()
+
     find_program(command cellist NO_DEFAULT_PATH NO_CACHE PATHS "${prefix}/bin")
     if(command)
         run("${command}" devices)
