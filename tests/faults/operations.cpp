@@ -203,23 +203,46 @@ void build_later(Scene& scene) {
     require_all_stored(report, scene.oracle);
 }
 
-/// What reads the lists finishes their build. Where it fails, the report tells what was done before.
-void build_later_and_read(Scene& scene) {
+/// A build, and something that reads its lists before its report. Where that fails, the report tells
+/// what was done before.
+auto build_later_and(Scene& scene, const auto& read) {
     Pending<BuildReport> pending = start_build(scene);
-    std::optional<HostLists<Item>> found;
-    try {
-        found = scene.lists.download();
-    } catch (const OpenClError&) {
-        const faults::Pause pause;
+    auto found = [&] {
         try {
-            require_all_stored(pending.get(), scene.oracle);
-            scene.lists_hold = Contents::full;
-        } catch (const OpenClError&) {}
-        throw;
-    }
+            return read();
+        } catch (const OpenClError&) {
+            const faults::Pause pause;
+            try {
+                require_all_stored(pending.get(), scene.oracle);
+                scene.lists_hold = Contents::full;
+            } catch (const OpenClError&) {}
+            throw;
+        }
+    }();
     scene.lists_hold = Contents::full;
-    require_same(*found, scene.oracle);
     require_all_stored(pending.get(), scene.oracle);
+    return found;
+}
+
+void build_later_and_read(Scene& scene) {
+    require_same(build_later_and(scene, [&] { return scene.lists.download(); }), scene.oracle);
+}
+
+void build_later_and_validate(Scene& scene) {
+    require_sound(build_later_and(scene, [&] { return scene.lists.validate(); }));
+}
+
+/// Under drop the copy has room for the whole pool, whose rest holds anything.
+void build_later_and_pack(Scene& scene) {
+    const Packed<Item> packed = build_later_and(scene, [&] { return scene.lists.pack(); });
+    const faults::Pause pause;
+    const std::vector<cl_uint> offsets = packed.offsets.download();
+    std::vector<Item> records = packed.records.download();
+    REQUIRE(records.size() == scene.lists.capacity_nodes());
+    REQUIRE(offsets.back() == scene.oracle.size());
+    records.resize(offsets.back());
+    require_same(HostLists<Item>({cell_count}, {offsets.begin(), offsets.end()}, records),
+                 scene.oracle);
 }
 
 void abandon_a_build(Scene& scene) {
@@ -427,6 +450,10 @@ constexpr Operation table[] = {
     {"build later and read", empty, build_later_and_read, repeated},
     {"build later, drop and read", empty, build_later_and_read, repeated, Room::enough,
      Overflow::drop},
+    {"build later, drop and validate", empty, build_later_and_validate, repeated, Room::enough,
+     Overflow::drop, 3},
+    {"build later, drop and pack", empty, build_later_and_pack, repeated, Room::enough,
+     Overflow::drop, 3},
     {"abandon a build", full, abandon_a_build, repeated},
     {"build in an automatic storage", empty, build_automatic, first, Room::enough, Overflow::grow,
      1, true},
