@@ -22,8 +22,7 @@ target_compile_options(cellist_warnings INTERFACE
     $<$<CXX_COMPILER_ID:GNU>:-Wlogical-op>
     # g++ 12 reports an overlapping or oversized memcpy in std::string concatenation where there is
     # none (GCC bug 105651). In precompiled headers it forgets that the string is a system header.
-    $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
-    $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-stringop-overflow>
+    "$<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow>"
     $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-array-bounds>
     $<$<BOOL:${CELLIST_WERROR}>:-Werror>)
 
