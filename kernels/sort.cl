@@ -97,11 +97,13 @@ static inline void cellist_sort_store(global cellist_sort_node* nodes, uint at, 
 }
 
 #if CELLIST_MODES != CELLIST_LINKED
-// Whether the offsets of a list are impossible.
+// Whether the offsets of a list are impossible. Cells of another slice have no records, wherever these would
+// be.
 static inline int cellist_sort_is_broken(volatile global uint* heads, const cellist_view view,
                                          uint cell) {
+    const uint begin = cellist_begin(heads, view, cell);
     const uint end = cellist_end(heads, view, cell);
-    return cellist_begin(heads, view, cell) > end || end > view.capacity_nodes;
+    return begin != end && (begin > end || end > view.capacity_nodes);
 }
 
 // Nodes of a list; none where the offsets are impossible.

@@ -29,6 +29,13 @@ kernel void make_circle(CELLIST_LISTS(Item, lists), uint length)
     if (i < length) lists_nodes[i].next = (i + 1u) % length;
 }
 
+// The first node of a cell leads to the first of cell `target`, or to node `target` where there is no such cell.
+kernel void cut(CELLIST_LISTS(Item, lists), uint cell, uint target)
+{
+    lists_nodes[lists_heads[cell]].next =
+        target < cellist_cells(lists) ? lists_heads[target] : target;
+}
+
 kernel void scramble_offsets(CELLIST_LISTS(Item, lists), uint seed, uint range)
 {
     const uint i = get_global_id(0);
@@ -52,10 +59,13 @@ struct Corrupt {
     void restore() { inserter_.build(lists, inserts_); }
 
     /// Sorts, whatever comes of it, and returns whether that is an error.
-    bool sort_fails() {
+    bool sort_fails(bool partial = false) {
         device().finish();
         try {
-            lists.sort(&Item::key);
+            if (partial)
+                lists.partial_sort(&Item::key, 2);
+            else
+                lists.sort(&Item::key);
         } catch (const OpenClError&) {
             throw;
         } catch (const Error& error) {
@@ -114,6 +124,28 @@ TEST_CASE("all lists in one circle do not sort", "[corruption][oclgrind]") {
         REQUIRE(corrupt.sort_fails());
         REQUIRE_FALSE(corrupt.lists.validate().ok());
     }
+    corrupt.require_usable();
+}
+
+TEST_CASE("links out of the pool and lists of other lengths do not sort", "[corruption]") {
+    Corrupt corrupt(Storage::linked, CELLIST_EACH_DIVISION);
+    Kernel cut(device(), source, "cut", corrupt.lists);
+    // Out of the pool; nowhere, so that nodes are lost; to another list, whose end two lists share then.
+    for (const cl_uint target : {0x7FFFFFFFu, 0xFFFFFFFEu, 0xFFFFFFFFu, 5u})
+        for (const bool partial : {false, true}) {
+            INFO("a link to " << target);
+            corrupt.restore();
+            cut.run(1, corrupt.lists, 3u, target);
+            REQUIRE(corrupt.sort_fails(partial));
+        }
+    corrupt.require_usable();
+}
+
+TEST_CASE("offsets that descend are an error of a sort", "[corruption]") {
+    Corrupt corrupt(Storage::counted, CELLIST_EACH_DIVISION);
+    Kernel scramble(device(), source, "scramble_offsets", corrupt.lists);
+    scramble.run(Range::padded(Corrupt::cells + 1, 64), corrupt.lists, 0u, Corrupt::nodes);
+    REQUIRE(corrupt.sort_fails());
     corrupt.require_usable();
 }
 
