@@ -6,6 +6,7 @@
 #include <cellist/lists.clh>
 
 kernel void cellist_lengths(CELLIST_LISTS(CELLIST_RECORD, lists), global uint* lengths) {
+    const cellist_view lists_view = cellist_view_of(lists);
     const uint cell = get_global_id(0);
     if (cell >= cellist_cells(lists)) return;
     uint length = 0;

@@ -6,6 +6,7 @@
 
 // After a ranking pass: the threshold of its word, and how many of the records that equal it are kept.
 kernel void cellist_set_thresholds(CELLIST_LISTS(CELLIST_RECORD, lists)) {
+    const cellist_view lists_view = cellist_view_of(lists);
     const uint cell = get_global_id(0);
     if (cell >= cellist_cells(lists)) return;
     const ulong at = cellist_row(lists_view, CELLIST_ROW_WANTED, cell);
@@ -24,6 +25,7 @@ kernel void cellist_set_thresholds(CELLIST_LISTS(CELLIST_RECORD, lists)) {
 // After a choosing pass: whether the words that were ranked decide.
 kernel void cellist_check_choice(CELLIST_LISTS(CELLIST_RECORD, lists),
                                  volatile global cellist_choice* choice) {
+    const cellist_view lists_view = cellist_view_of(lists);
     const uint cell = get_global_id(0);
     if (cell >= cellist_cells(lists)) return;
     const uint wanted = lists_heads[cellist_row(lists_view, CELLIST_ROW_WANTED, cell)];

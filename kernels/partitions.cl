@@ -65,6 +65,7 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cellist_move_partitio
     global const CELLIST_NODE_OF(CELLIST_RECORD) * restrict nodes,
     global const uint* restrict partitioned, uint hands, uint partition_bits,
     global const uint* restrict starts) {
+    const cellist_view lists_view = cellist_view_of(lists);
     const uint partition = get_global_id(0);
     const uint partitions = get_global_size(0);
     if (starts[0] > lists_view.capacity_nodes) return;

@@ -18,6 +18,7 @@ static inline int cellist_sort_before(global const struct CELLIST_RECORD* a, cel
 // Merges two sorted lists of up to `most` nodes together.
 static inline uint cellist_sort_merge(CELLIST_LISTS(CELLIST_RECORD, lists), uint a, uint b,
                                       ulong most) {
+    const cellist_view lists_view = cellist_view_of(lists);
     uint first = CELLIST_NONE;
     uint last = CELLIST_NONE;
     cellist_sort_bits x = cellist_sort_key(&cellist_get(lists, a));
@@ -45,6 +46,7 @@ static inline uint cellist_sort_merge(CELLIST_LISTS(CELLIST_RECORD, lists), uint
 }
 
 static inline void cellist_sort_cell(CELLIST_LISTS(CELLIST_RECORD, lists), uint cell) {
+    const cellist_view lists_view = cellist_view_of(lists);
     uint pending[32];
     uint used = 0;
     uint node = lists_heads[cell];
@@ -102,6 +104,7 @@ static inline void cellist_sort_sift(global struct CELLIST_RECORD* records, uint
 }
 
 static inline void cellist_sort_cell(CELLIST_LISTS(CELLIST_RECORD, lists), uint cell) {
+    const cellist_view lists_view = cellist_view_of(lists);
     const uint length = cellist_sort_length(lists_heads, lists_view, cell);
     if (length < 2) return;
     global struct CELLIST_RECORD* records =

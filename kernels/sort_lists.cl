@@ -30,6 +30,7 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
                                        global uint* heads, global cellist_sort_node* nodes
 #endif
 ) {
+    const cellist_view lists_view = cellist_view_of(lists);
     CELLIST_SORT_SHARED cellist_sort_bits keys[CELLIST_SORT_LISTS * CELLIST_SORT_STRIDE];
     CELLIST_SORT_SHARED uchar order[CELLIST_SORT_LISTS * CELLIST_SORT_STRIDE];
     CELLIST_SORT_SHARED uint sums[CELLIST_SORT_LISTS];

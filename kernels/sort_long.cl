@@ -47,6 +47,7 @@ static inline int cellist_sort_is_splitter(const cellist_view view, uint node) {
 
 static inline uint cellist_sort_part_begin(CELLIST_LISTS(CELLIST_RECORD, lists),
                                            global const uint* longer, uint part) {
+    const cellist_view lists_view = cellist_view_of(lists);
     const uint splitters = cellist_sort_splitters(lists_view);
     return part < splitters ? cellist_sort_splitter(part) : lists_heads[longer[part - splitters]];
 }
@@ -54,6 +55,7 @@ static inline uint cellist_sort_part_begin(CELLIST_LISTS(CELLIST_RECORD, lists),
 // How long each part is. A work-item walks CELLIST_SORT_LISTS parts at a time.
 kernel void cellist_sort_measure(CELLIST_LISTS(CELLIST_RECORD, lists), global const uint* longer,
                                  uint count, global uint2* parts) {
+    const cellist_view lists_view = cellist_view_of(lists);
     const uint splitters = cellist_sort_splitters(lists_view);
     const ulong end = (ulong)splitters + count;
     const ulong begin = (ulong)get_global_id(0) * CELLIST_SORT_LISTS;
@@ -119,6 +121,7 @@ kernel void cellist_sort_place(CELLIST_LISTS(CELLIST_RECORD, lists), global cons
                                global const uint2* parts, global uint2* places, global uint* heads
 #endif
 ) {
+    const cellist_view lists_view = cellist_view_of(lists);
     const uint i = get_global_id(0);
     if (i >= count) return;
     cellist_sort_long list = {0, 0, 0};
@@ -154,6 +157,7 @@ kernel void cellist_sort_collect(CELLIST_LISTS(CELLIST_RECORD, lists), global co
                                  uint count, global const cellist_sort_long* longs,
                                  global const uint2* parts, global const uint2* places,
                                  global cellist_sort_node* nodes) {
+    const cellist_view lists_view = cellist_view_of(lists);
     const ulong end = (ulong)cellist_sort_splitters(lists_view) + count;
     const ulong begin = (ulong)get_global_id(0) * CELLIST_SORT_LISTS;
     if (begin >= end) return;
@@ -192,6 +196,7 @@ kernel void cellist_sort_collect(CELLIST_LISTS(CELLIST_RECORD, lists), global co
 // Says that the first `stored` nodes of the pool are allocated, and no others; one work-item a shard, and one
 // a hand.
 kernel void cellist_sort_allocate(CELLIST_LISTS(CELLIST_RECORD, lists), uint stored) {
+    const cellist_view lists_view = cellist_view_of(lists);
     const uint i = get_global_id(0);
     const uint count = 1u << lists_view.shard_bits;
     cellist_view view = lists_view;

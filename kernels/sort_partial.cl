@@ -61,6 +61,7 @@ static inline void cellist_sort_move(CELLIST_LISTS(CELLIST_RECORD, lists),
 
 kernel void cellist_sort_partial(CELLIST_LISTS(CELLIST_RECORD, lists), uint count, uint length_max,
                                  volatile global cellist_sort_state* state) {
+    const cellist_view lists_view = cellist_view_of(lists);
     const ulong begin = (ulong)get_global_id(0) * CELLIST_SORT_LISTS;
     if (begin >= cellist_cells(lists)) return;
     const uint own = min(cellist_cells(lists) - (uint)begin, (uint)CELLIST_SORT_LISTS);

@@ -6,6 +6,7 @@
 #include <cellist/lists.clh>
 
 kernel void cellist_unlinked(CELLIST_LISTS(CELLIST_RECORD, lists), volatile global uint* unlinked) {
+    const cellist_view lists_view = cellist_view_of(lists);
     const uint node = get_global_id(0);
     if (get_global_id(0) >= lists_view.capacity_nodes) return;
     if (lists_nodes[node].next == CELLIST_UNLINKED &&

@@ -11,6 +11,7 @@
 kernel void cellist_validate_contiguous(CELLIST_LISTS(CELLIST_RECORD, lists),
                                         global const uint* offsets,
                                         volatile global cellist_findings* findings) {
+    const cellist_view lists_view = cellist_view_of(lists);
     const uint cell = get_global_id(0);
     if (cell >= cellist_cells(lists)) return;
     const uint begin = lists_heads[cell];

@@ -13,6 +13,7 @@
 kernel void cellist_validate_linked(CELLIST_LISTS(CELLIST_RECORD, lists),
                                     volatile global uint* reached,
                                     volatile global cellist_findings* findings) {
+    const cellist_view lists_view = cellist_view_of(lists);
     const uint cell = get_global_id(0);
     if (cell >= cellist_cells(lists)) return;
     uint length = 0;

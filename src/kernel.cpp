@@ -78,10 +78,10 @@ const cl::Program& build(detail::DeviceState& device, const Source& source,
 
 /// Bytes of a parameter passed by value; 0 if the type is not known.
 std::size_t type_size(std::string name, const detail::Definitions& definitions) {
-    if (name == "cellist_view") return sizeof(cellist_view);
+    if (name.find("cellist_view_") != std::string::npos) return sizeof(cellist_view);
     for (const detail::RecordType& record : definitions.records)
         if (record.name == name || "struct " + record.name == name) return record.size;
-    if (name.starts_with("unsigned ")) name = "u" + name.substr(9);
+    if (name.starts_with("unsigned ")) name.replace(0, 9, "u");
     static const std::map<std::string, std::size_t> scalars{
         {"char", 1}, {"uchar", 1}, {"short", 2}, {"ushort", 2}, {"half", 2},  {"int", 4},
         {"uint", 4}, {"float", 4}, {"long", 8},  {"ulong", 8},  {"double", 8}};

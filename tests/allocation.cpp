@@ -230,6 +230,7 @@ TEST_CASE("a node in the hand of a thread is free") {
 #include <cellist/lists.clh>
 kernel void steal(CELLIST_LISTS(Item, lists), global uint* found)
 {
+    const cellist_view lists_view = cellist_view_of(lists);
     volatile global cellist_hand* hands = cellist_hands(lists_shards, lists_view);
     *found = 0;
     for (uint i = 0; i < lists_view.hands; ++i) {

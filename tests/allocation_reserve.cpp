@@ -58,6 +58,7 @@ kernel void reserve_only(CELLIST_LISTS(Item, lists), uint n) { cellist_reserve(l
 // The first node that was reserved and not linked becomes the head of a cell.
 kernel void link_unlinked(CELLIST_LISTS(Item, lists), uint cell, global uint* found)
 {
+    const cellist_view lists_view = cellist_view_of(lists);
     for (uint node = 0; node < lists_view.capacity_nodes; ++node)
         if (lists_nodes[node].next == CELLIST_UNLINKED) {
             lists_heads[cell] = node;
@@ -69,6 +70,7 @@ kernel void link_unlinked(CELLIST_LISTS(Item, lists), uint cell, global uint* fo
 // As if so many records had been dropped, and nodes been missed, in each shard already.
 kernel void preset(CELLIST_LISTS(Item, lists), uint dropped, uint missing)
 {
+    const cellist_view lists_view = cellist_view_of(lists);
     for (uint shard = 0; shard < (1u << lists_view.shard_bits); ++shard) {
         lists_shards[shard].dropped_low = dropped;
         lists_shards[shard].missing_low = missing;
@@ -76,11 +78,13 @@ kernel void preset(CELLIST_LISTS(Item, lists), uint dropped, uint missing)
 }
 kernel void preset_allocated(CELLIST_LISTS(Item, lists), uint above)
 {
+    const cellist_view lists_view = cellist_view_of(lists);
     for (uint shard = 0; shard < (1u << lists_view.shard_bits); ++shard)
         lists_shards[shard].allocated = cellist_shard_nodes(lists_view, shard) + above;
 }
 kernel void read_missing(CELLIST_LISTS(Item, lists), global ulong* missing)
 {
+    const cellist_view lists_view = cellist_view_of(lists);
     *missing = 0;
     for (uint shard = 0; shard < (1u << lists_view.shard_bits); ++shard)
         *missing += (ulong)lists_shards[shard].missing_high << 32 | lists_shards[shard].missing_low;

@@ -185,10 +185,10 @@ TEST_CASE("the largest extents are addressed to their last cell") {
 #include <cellist/lists.clh>
 kernel void largest(CELLIST_LISTS(Item, small), global uint* cells)
 {
-    cellist_view large_view = small_view;
-    large_view.extent[0] = 0x7FFFFFFFu;
-    large_view.extent[1] = 2u;
-    large_view.cells = 0xFFFFFFFEu;
+    cellist_view_Item large_typed = small_typed;
+    large_typed.cellist_untyped.extent[0] = 0x7FFFFFFFu;
+    large_typed.cellist_untyped.extent[1] = 2u;
+    large_typed.cellist_untyped.cells = 0xFFFFFFFEu;
     cells[0] = cellist_cell2(large, 0x7FFFFFFEu, 1);
     cells[1] = cellist_cell2(large, 0x7FFFFFFFu, 1);
     cells[2] = cellist_cell2(large, 2147483647.0f, 0);

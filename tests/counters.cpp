@@ -9,6 +9,7 @@ constexpr auto source = R"(
 
 kernel void preset_low(CELLIST_LISTS(Item, lists), uint dropped, uint rejected)
 {
+    const cellist_view lists_view = cellist_view_of(lists);
     for (uint shard = 0; shard < (1u << lists_view.shard_bits); ++shard) {
         lists_shards[shard].dropped_low = dropped;
         lists_shards[shard].rejected_low = rejected;
@@ -18,6 +19,7 @@ kernel void preset_low(CELLIST_LISTS(Item, lists), uint dropped, uint rejected)
 // `above` more than each shard has nodes.
 kernel void preset_allocated(CELLIST_LISTS(Item, lists), uint above)
 {
+    const cellist_view lists_view = cellist_view_of(lists);
     for (uint shard = 0; shard < (1u << lists_view.shard_bits); ++shard)
         lists_shards[shard].allocated = cellist_shard_nodes(lists_view, shard) + above;
 }
@@ -35,6 +37,7 @@ kernel void insert_many(CELLIST_LISTS(Item, lists), uint outside, global uint* i
 // The nodes that each shard owns, marked by the shard.
 kernel void owners(CELLIST_LISTS(Item, lists), global uint* owner, global uint* repeated)
 {
+    const cellist_view lists_view = cellist_view_of(lists);
     for (uint shard = 0; shard < (1u << lists_view.shard_bits); ++shard)
         for (uint n = 0; n < cellist_shard_nodes(lists_view, shard); ++n) {
             const uint node = cellist_shard_address(lists_view, shard, n);

@@ -15,6 +15,7 @@ constexpr auto source = R"(
 // As if `count` records had been inserted into a cell already, the dropped ones among them counted.
 kernel void preset(CELLIST_LISTS(Item, lists), uint cell, uint count)
 {
+    const cellist_view lists_view = cellist_view_of(lists);
     uint room = 0, at = cell;
     if (lists_view.mode == CELLIST_FIXED) room = lists_view.slots;
     else at += lists_view.cells + 1;
@@ -34,6 +35,7 @@ kernel void insert_many(CELLIST_LISTS(Item, lists), uint cell, volatile global u
 
 kernel void read_count(CELLIST_LISTS(Item, lists), uint cell, global uint* count)
 {
+    const cellist_view lists_view = cellist_view_of(lists);
     *count = lists_heads[lists_view.mode == CELLIST_FIXED ? cell : lists_view.cells + 1 + cell];
 }
 )";

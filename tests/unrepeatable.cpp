@@ -46,6 +46,7 @@ kernel void vary(CELLIST_LISTS(Item, lists), uint way, volatile global uint* run
 
 kernel void prepare(CELLIST_LISTS(Item, lists))
 {
+    const cellist_view lists_view = cellist_view_of(lists);
     if (lists_view.mode != CELLIST_CONTIGUOUS) return;
     cellist_get(lists, get_global_id(0)).id = UNTOUCHED;
 }
@@ -54,6 +55,7 @@ kernel void prepare(CELLIST_LISTS(Item, lists))
 kernel void check(CELLIST_LISTS(Item, lists), volatile global uint* written,
                   volatile global uint* wrong)
 {
+    const cellist_view lists_view = cellist_view_of(lists);
     if (lists_view.mode != CELLIST_CONTIGUOUS) return;
     const uint node = get_global_id(0);
     const Item item = cellist_get(lists, node);
