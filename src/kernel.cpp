@@ -30,6 +30,9 @@ struct Parameter {
     std::size_t size = 0;  ///< in bytes; 0 if not known
 };
 
+/// The part of a program that defines the adapted structs.
+constexpr auto structs = "cellist/structs";
+
 /// What a device has, unless the build options define it.
 void add_switch(ProgramText& whole, const std::string& name, bool on) {
     whole.add(
@@ -44,6 +47,14 @@ ProgramText whole_source(const Source& source, const detail::Definitions& defini
     detail::Definitions all = definitions;
     if (uses_glm) all.add(detail::glm_source());
     ProgramText whole;
+    // Macros of the build options are for the user's source, and unknown to the library's.
+    const std::vector<std::string> macros = detail::defined_macros(source.options);
+    std::string hide, show;
+    for (const std::string& macro : macros) {
+        hide += "#pragma push_macro(\"" + macro + "\")\n#undef " + macro + "\n";
+        show.insert(0, "#pragma pop_macro(\"" + macro + "\")\n");
+    }
+    whole.add(hide, "options");
     whole.add("#define CELLIST_MODES " + std::to_string(modes) + "u", "modes");
     add_switch(whole, "LANES", device.lanes);
     add_switch(whole, "THREADS", device.threads);
@@ -52,9 +63,53 @@ ProgramText whole_source(const Source& source, const detail::Definitions& defini
     whole.add(kernels::threads_clh, "cellist/threads.clh");
     whole.add(kernels::allocation_clh, "cellist/allocation.clh");
     whole.add(kernels::lists_clh, "cellist/lists.clh");
-    whole.add(all.source(), "structs");
+    whole.add(all.source(), structs);
+    whole.add(show, "options");
     whole.add(text, source.file_name);
     return whole;
+}
+
+/// Which struct or member the device's compiler does not accept, and why; empty if it is something else.
+std::string complaint_about_structs(const ProgramText& whole, const std::string& log,
+                                    const DeviceInfo& device) {
+    const std::vector<ProgramText::Complaint> errors = whole.errors(log, structs);
+    if (errors.empty()) return {};
+    // A member that the compiler drops changes the layout as well.
+    const auto name = std::find_if(errors.begin(), errors.end(), [](const auto& error) {
+        return error.message.find("negative") == std::string_view::npos;
+    });
+    const std::string_view line = name == errors.end() ? errors.front().line : name->line;
+    constexpr std::string_view because = "  // ";
+    const std::size_t comment = line.rfind(because);
+    if (comment == std::string_view::npos) return {};
+    const std::string subject(line.substr(comment + because.size()));
+    if (name == errors.end())
+        return "the layout of a struct differs between the host and " + device.name + ": " +
+               subject + "\n";
+    return "the compiler of " + device.name + " does not accept " + subject +
+           ": where its name is a word or a macro of OpenCL C, or of the library, rename it\n";
+}
+
+/// Names the macros of the build options where one replaces a member, or the log complains about one.
+std::string macro_hint(const std::string& options, const detail::Definitions& definitions,
+                       const std::string& log) {
+    const bool in_log = log.find("<command line>") != std::string::npos;
+    const auto names_member = [&](const std::string& macro) {
+        return std::any_of(
+            definitions.records.begin(), definitions.records.end(), [&](const auto& record) {
+                return record.name == macro ||
+                       std::any_of(record.members.begin(), record.members.end(),
+                                   [&](const auto& member) { return member.name == macro; });
+            });
+    };
+    std::string hint;
+    for (const std::string& macro : detail::defined_macros(options))
+        if (names_member(macro))
+            hint += "\nhint: the build options define the macro '" + macro +
+                    "', which is the name of a struct or member";
+        else if (in_log)
+            hint += "\nhint: the build options define the macro '" + macro + "'";
+    return hint;
 }
 
 const cl::Program& build(detail::DeviceState& device, const Source& source,
@@ -67,12 +122,15 @@ const cl::Program& build(detail::DeviceState& device, const Source& source,
     try {
         return device.program(whole.text(), "-cl-std=CL1.2 -cl-kernel-arg-info " + source.options);
     } catch (const OpenClError& error) {
-        const std::string member = detail::name_behind("cellist_layout_of_", error.log());
-        if (!member.empty())
-            throw Error("the layout of a struct differs between the host and " + device.info.name +
-                        ": " + member + " (struct_member)");
+        const std::string log = whole.in_parts(error.log());
+        const auto known = [&](const std::string& name) {
+            return std::any_of(definitions.records.begin(), definitions.records.end(),
+                               [&](const auto& record) { return record.name == name; });
+        };
+        const std::string complaint = complaint_about_structs(whole, log, device.info);
         throw OpenClError(error.call(), error.code(),
-                          detail::with_hints(whole.in_parts(error.log())));
+                          (complaint.empty() ? detail::with_hints(log, known) : complaint + log) +
+                              macro_hint(source.options, definitions, log));
     }
 }
 

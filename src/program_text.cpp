@@ -59,7 +59,12 @@ void ProgramText::add(std::string_view part, const std::string& file_name) {
 }
 
 std::string ProgramText::in_parts(std::string_view log) const {
-    constexpr std::string_view place = "<kernel>:";
+    // Not where a part has such a name.
+    const bool has_input = std::any_of(parts_.begin(), parts_.end(), [](const Part& part) {
+        return part.file_name.ends_with("input.cl");
+    });
+    const std::string_view place =
+        log.find("<kernel>:") == std::string_view::npos && !has_input ? "input.cl:" : "<kernel>:";
     std::string out;
     std::size_t rest = 0;
     for (std::size_t at = log.find(place); at != std::string_view::npos; at = log.find(place, at)) {
@@ -79,6 +84,35 @@ std::string ProgramText::in_parts(std::string_view log) const {
     return out.append(log.substr(rest));
 }
 
+std::vector<ProgramText::Complaint> ProgramText::errors(std::string_view log,
+                                                        const std::string& file_name) const {
+    std::vector<Complaint> found;
+    const auto part = std::find_if(parts_.begin(), parts_.end(), [&](const Part& candidate) {
+        return candidate.file_name == file_name;
+    });
+    if (part == parts_.end()) return found;
+    std::string_view text = text_;
+    for (std::size_t line = 1; line < part->line; ++line)
+        text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+    while (!log.empty()) {
+        const std::string_view message = log.substr(0, log.find('\n'));
+        log.remove_prefix(std::min(message.size() + 1, log.size()));
+        // "FILE:LINE:COLUMN: error: ...", and PoCL's "error: FILE:LINE:COLUMN: ..."
+        std::string_view rest = message;
+        take(rest, "error: ");
+        if (!take(rest, file_name) || !take(rest, ":")) continue;
+        if (message.find("error: ") == std::string_view::npos) continue;
+        const std::string_view number = run(rest, 0, digits);
+        std::size_t line = 0;
+        std::from_chars(number.data(), number.data() + number.size(), line);
+        std::string_view complained = text;
+        for (; line > 0 && !complained.empty(); --line)
+            complained.remove_prefix(std::min(complained.find('\n'), complained.size() - 1) + 1);
+        found.push_back({message, complained.substr(0, complained.find('\n'))});
+    }
+    return found;
+}
+
 void ProgramText::append(std::string_view part) {
     text_ += part;
     lines_ += static_cast<std::size_t>(std::count(part.begin(), part.end(), '\n'));
@@ -86,6 +120,7 @@ void ProgramText::append(std::string_view part) {
 
 std::string without_library_includes(std::string_view text, bool& uses_glm) {
     std::string out;
+    take(text, "\xEF\xBB\xBF");  // a byte order mark, which compilers skip at the start alone
     while (!text.empty()) {
         std::string_view line = text;
         const std::string_view name = take_library_include(line);
@@ -101,6 +136,24 @@ std::string without_library_includes(std::string_view text, bool& uses_glm) {
     return out;
 }
 
+std::vector<std::string> defined_macros(std::string_view options) {
+    std::vector<std::string> names;
+    for (std::size_t at = options.find("-D"); at != std::string_view::npos;
+         at = options.find("-D", at)) {
+        const bool begins =
+            at == 0 || std::string_view(" \t\"'").find(options[at - 1]) != std::string_view::npos;
+        at += 2;
+        if (!begins) continue;
+        at = std::min(options.find_first_not_of(" \t\"'", at), options.size());
+        const std::string_view name = run(options, at, name_characters);
+        if (name.empty() || digits.find(name[0]) != std::string_view::npos) continue;
+        if (name.starts_with("CELLIST_") || name.starts_with("__") || name.starts_with("cl_"))
+            continue;
+        names.emplace_back(name);
+    }
+    return names;
+}
+
 std::string name_behind(std::string_view prefix, std::string_view text) {
     for (std::size_t at = text.find(prefix); at != std::string_view::npos;
          at = text.find(prefix, at)) {
@@ -111,8 +164,9 @@ std::string name_behind(std::string_view prefix, std::string_view text) {
     return {};
 }
 
-std::string with_hints(std::string log) {
-    const std::string record = name_behind("cellist_node_", log);
+std::string with_hints(std::string log, const std::function<bool(const std::string&)>& known) {
+    std::string record = name_behind("cellist_node_", log);
+    if (known(record)) record.clear();
     const std::string key = name_behind("cellist_key_", log);
     if (!record.empty())
         log += "\nhint: name a Lists<" + record + "> or cellist::type<" + record +

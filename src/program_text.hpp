@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,9 +17,18 @@ public:
 
     [[nodiscard]] const std::string& text() const { return text_; }
 
-    /// A compiler's log with the names and lines of the parts. NVIDIA's compiler does not follow
-    /// #line, and counts the lines of the whole text of "<kernel>".
+    /// A compiler's log with the names and lines of the parts. NVIDIA's compiler and Oclgrind do not
+    /// follow #line, and count the lines of the whole text of "<kernel>" and "input.cl".
     [[nodiscard]] std::string in_parts(std::string_view log) const;
+
+    /// An error of such a log.
+    struct Complaint {
+        std::string_view message;
+        std::string_view line;  ///< of the text, that the compiler complains about
+    };
+    /// The errors in the part of this name, in the log's order.
+    [[nodiscard]] std::vector<Complaint> errors(std::string_view log,
+                                                const std::string& file_name) const;
 
 private:
     struct Part {
@@ -33,14 +43,20 @@ private:
     std::vector<Part> parts_;
 };
 
-/// Takes the library's own #include lines out of a source, since its text stands before it already,
-/// and keeps the line numbers. Sets `uses_glm` if <cellist/glm.clh> was among them.
+/// Takes a byte order mark and the library's own #include lines out of a source, since the library's
+/// text stands before it already, and keeps the line numbers. Sets `uses_glm` if <cellist/glm.clh> was among them.
 [[nodiscard]] std::string without_library_includes(std::string_view text, bool& uses_glm);
+
+/// The macros that build options define with -D, but for those that belong to the library or to the
+/// compiler.
+[[nodiscard]] std::vector<std::string> defined_macros(std::string_view options);
 
 /// The letters, digits and underscores behind the first `prefix` that has any; empty if none has.
 [[nodiscard]] std::string name_behind(std::string_view prefix, std::string_view text);
 
-/// A log that mentions names which users never wrote, with what is behind them.
-[[nodiscard]] std::string with_hints(std::string log);
+/// A log that mentions names which users never wrote, with what is behind them. `known` tells whether the
+/// program knows a struct of a name.
+[[nodiscard]] std::string with_hints(std::string log,
+                                     const std::function<bool(const std::string&)>& known);
 
 }  // namespace cellist::detail

@@ -19,24 +19,35 @@ bool same_layout(const RecordType& a, const RecordType& b) {
                       });
 }
 
+/// The end of a line that only exists because of a struct, or of one of its members: says so where the
+/// compiler complains.
+std::string because_of(const RecordType& record) { return "  // struct " + record.name + "\n"; }
+std::string because_of(const RecordType& record, const RecordMember& member) {
+    return "  // member " + member.name + " of struct " + record.name + "\n";
+}
+
 std::string struct_definition(const RecordType& record) {
-    std::string text = "typedef struct " + record.name + " {\n";
+    std::string text = "typedef struct " + record.name + " {" + because_of(record);
     for (const RecordMember& member : record.members)
-        text += "    " + member.type + " " + member.name + member.extents + ";\n";
-    return text + "} " + record.name + ";\n";
+        text += "    " + member.type + " " + member.name + member.extents + ";" +
+                because_of(record, member);
+    return text + "} " + record.name + ";" + because_of(record);
 }
 
 /// Arrays of negative size where the device's compiler disagrees with the host's.
 std::string layout_checks(const RecordType& record) {
-    const auto check = [&](const std::string& what, const std::string& equality) {
-        return "typedef char cellist_layout_of_" + record.name + "_" + what + "[(" + equality +
-               ") ? 1 : -1];\n";
+    const std::string type = "struct " + record.name;
+    const auto check = [&](std::size_t number, const std::string& value, std::size_t expected) {
+        return "typedef char cellist_layout_of_" + record.name + "_" + std::to_string(number) +
+               "[(" + value + " == " + std::to_string(expected) + ") ? 1 : -1];";
     };
-    std::string text =
-        check("size", "sizeof(" + record.name + ") == " + std::to_string(record.size));
-    for (const RecordMember& member : record.members)
-        text += check(member.name, "__builtin_offsetof(" + record.name + ", " + member.name +
-                                       ") == " + std::to_string(member.offset));
+    std::string text = check(0, "sizeof(" + type + ")", record.size) + because_of(record);
+    for (std::size_t i = 0; i < record.members.size(); ++i) {
+        const RecordMember& member = record.members[i];
+        text +=
+            check(i + 1, "__builtin_offsetof(" + type + ", " + member.name + ")", member.offset) +
+            because_of(record, member);
+    }
     return text;
 }
 
@@ -68,7 +79,7 @@ std::string order_definition(const RecordType& record) {
         for (const RecordMember& member : record.members)
             if (member.is_scalar)
                 text += "    case cellist_key_" + member.name + ": " + compare(member.name) +
-                        " break;\n";
+                        " break;" + because_of(record, member);
         text += "    default: break;\n    }\n    if (x != y) return x < y;\n";
         for (const RecordMember& member : record.members) {
             std::size_t elements = 0;
@@ -76,14 +87,15 @@ std::string order_definition(const RecordType& record) {
             if (!parts.empty())
                 text += "    for (uint i = 0; i < " + std::to_string(elements) + "u; ++i) {\n";
             for (const std::string& part : parts)
-                text += "    " + compare(member.name + "[i]" + part) +
-                        "\n    if (x != y) return x < y;\n";
+                text += "    " + compare(member.name + "[i]" + part) + because_of(record, member) +
+                        "    if (x != y) return x < y;\n";
             if (!parts.empty()) {
                 text += "    }\n";
                 continue;
             }
             for (const std::string& path : member.scalars)
-                text += "    " + compare(path) + "\n    if (x != y) return x < y;\n";
+                text += "    " + compare(path) + because_of(record, member) +
+                        "    if (x != y) return x < y;\n";
         }
         return text + "    return 0;\n}\n";
     };
@@ -95,14 +107,20 @@ std::string order_definition(const RecordType& record) {
 std::string rank_definition(const RecordType& record) {
     std::string members = "    switch (member) {\n";
     std::string lengths = members;
+    const auto word_of = [](const std::string& path) {
+        const std::string words = "cellist_words_of(record." + path + ")";
+        return "if (word < " + words + ") return cellist_word_of(record." + path +
+               ", word); word -= " + words + ";";
+    };
+    const auto add_words_of = [](const std::string& path) {
+        return "words += cellist_words_of(record->" + path + ");";
+    };
     for (std::size_t i = 0; i < record.members.size(); ++i) {
         const RecordMember& member = record.members[i];
         if (!member.is_scalar) continue;
         const std::string begin = "    case " + std::to_string(i) + ": ";
-        const std::string words = "cellist_key_words(record." + member.name + ")";
-        members += begin + "if (word < " + words + ") return cellist_key_word(record." +
-                   member.name + ", word); word -= " + words + "; break;\n";
-        lengths += begin + "words = cellist_key_words(record->" + member.name + "); break;\n";
+        members += begin + word_of(member.name) + " break;\n";
+        lengths += begin + add_words_of(member.name) + " break;\n";
     }
     members += "    default: break;\n    }\n";
     lengths += "    default: break;\n    }\n";
@@ -112,10 +130,8 @@ std::string rank_definition(const RecordType& record) {
         const std::string other = "    if (member != " + std::to_string(i) + ") {\n";
         if (member.is_scalar) members += other, lengths += other;
         for (const std::string& path : member.scalars) {
-            const std::string words = "cellist_key_words(record." + path + ")";
-            members += "    if (word < " + words + ") return cellist_key_word(record." + path +
-                       ", word);\n    word -= " + words + ";\n";
-            lengths += "    words += cellist_key_words(record->" + path + ");\n";
+            members += "    " + word_of(path) + "\n";
+            lengths += "    " + add_words_of(path) + "\n";
         }
         if (member.is_scalar) members += "    }\n", lengths += "    }\n";
     }
@@ -166,8 +182,8 @@ std::string Definitions::source() const {
         text += "#if CELLIST_MODES & (CELLIST_RANKING | CELLIST_CHOOSING)\n" +
                 rank_definition(record) + "#endif\n";
         text += "CELLIST_DEFINE_NODE(" + record.name + ", " +
-                std::to_string(node_layout(record).alignment) + ")\n";
-        text += "CELLIST_DEFINE_RECORD(" + record.name + ")\n";
+                std::to_string(node_layout(record).alignment) + ")" + because_of(record);
+        text += "CELLIST_DEFINE_RECORD(" + record.name + ")" + because_of(record);
     }
     return text;
 }

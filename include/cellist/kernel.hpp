@@ -17,7 +17,8 @@ struct Source {
     std::string text = {};
     /// Stands before the line numbers in the compiler's messages.
     std::string file_name = "kernel";
-    /// Added to the build options, which start with "-cl-std=CL1.2 -cl-kernel-arg-info".
+    /// Added to the build options, which start with "-cl-std=CL1.2 -cl-kernel-arg-info". Macros that
+    /// they define do not change the library's own text.
     std::string options = {};
 };
 
@@ -28,8 +29,8 @@ class Kernel {
 public:
     /// Builds `code` and takes the kernel called `name` from it. `uses` names the types that the
     /// source may use: containers, and cellist::type<T> for other adapted structs. Throws OpenClError
-    /// with the compiler's log where the source does not build, Error where a struct's layout on the
-    /// device differs. Blocks while it compiles.
+    /// with the compiler's log where the source does not build, where a struct's layout on the device
+    /// differs, and where OpenCL C reserves the name of a struct or member. Blocks while it compiles.
     template <class... Uses>
     Kernel(const Device& device, const Source& code, const std::string& name, const Uses&... uses)
         : Kernel(device.state(), code, name, definitions_of(uses...)) {}

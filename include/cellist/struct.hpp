@@ -24,7 +24,7 @@
 /// The struct must be trivially copyable and of standard layout. The offsets are compared with
 /// OpenCL C's rules when the host program is compiled, and with the device compiler's in each build.
 #define CELLIST_STRUCT(type, ...)                                                                  \
-    constexpr auto cellist_describe([[maybe_unused]] const type* tag) {                            \
+    constexpr auto cellist_describe(const type*) {                                                 \
         return ::cellist::detail::describe<type>(                                                  \
             #type CELLIST_FOR_EACH(CELLIST_STRUCT_MEMBER, type, __VA_ARGS__));                     \
     }                                                                                              \
