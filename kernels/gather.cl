@@ -5,11 +5,14 @@
 //   values    offsets[end] - offsets[begin]   out
 //
 // One work-item for each cell in begin ... end - 1; the range is padded to whole work-groups. The host
-// defines the value's type CELLIST_VALUE and cellist_value(CELLIST_RECORD).
+// defines CELLIST_VALUE, which declares a variable for a value, and CELLIST_MEMBER, which stands behind a
+// record for the value.
 #include <cellist/lists.clh>
 
-// Here, where no parameter has its name.
-typedef CELLIST_VALUE cellist_gathered;
+// A struct, because arrays are values too, and C assigns no arrays.
+typedef struct cellist_gathered {
+    CELLIST_VALUE;
+} cellist_gathered;
 
 kernel void cellist_gather(CELLIST_LISTS(CELLIST_RECORD, lists), uint begin, uint end,
                            global const uint* offsets, global cellist_gathered* values) {
@@ -20,6 +23,6 @@ kernel void cellist_gather(CELLIST_LISTS(CELLIST_RECORD, lists), uint begin, uin
     const uint list_end = offsets[cell + 1] - offsets[begin];
     cellist_for_each(lists, cell, node) {
         if (at == list_end) break;
-        values[at++] = cellist_value(cellist_get(lists, node));
+        values[at++] = *(global const cellist_gathered*)&(cellist_get(lists, node) CELLIST_MEMBER);
     }
 }

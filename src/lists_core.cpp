@@ -201,8 +201,8 @@ Memory ListsCore::device_offsets() const {
 
 /// Copies a value of each record of the cells begin ... end - 1 to the begin of `values`.
 void ListsCore::gather(std::uint64_t begin, std::uint64_t end, const Memory& offsets,
-                       const cl::Buffer& values, const std::string& type,
-                       const std::string& value) const {
+                       const cl::Buffer& values, const std::string& declaration,
+                       const std::string& member) const {
     Arguments arguments;
     add_to(arguments);
     arguments.add(static_cast<cl_uint>(begin));
@@ -210,7 +210,7 @@ void ListsCore::gather(std::uint64_t begin, std::uint64_t end, const Memory& off
     arguments.add(offsets.cl());
     arguments.add(values);
     kernel("cellist_gather", kernels::gather_cl,
-           "#define CELLIST_VALUE " + type + "\n#define cellist_value(record) " + value + "\n")
+           "#define CELLIST_VALUE " + declaration + "\n#define CELLIST_MEMBER " + member + "\n")
         .enqueue(Range::padded(end - begin), arguments);
 }
 
@@ -232,7 +232,7 @@ void ListsCore::download(Arrival& done, std::vector<cl_uint>& offsets,
                           std::uint64_t count) {
         if (count == 0) return;
         const Memory records(device_.state(), count, record_bytes, "download buffer");
-        gather(begin, end, words, records.cl(), record(), "record");
+        gather(begin, end, words, records.cl(), "struct " + record() + " value", "");
         done = records.read_later(target + first * record_bytes, count * record_bytes);
     };
     if (total <= most) return copy(0, shape_.cells(), 0, total);
@@ -247,14 +247,14 @@ void ListsCore::download(Arrival& done, std::vector<cl_uint>& offsets,
 
 void ListsCore::pack(const cl::Buffer& offsets,
                      const std::function<const cl::Buffer&(std::uint64_t)>& allocate,
-                     const std::string& type, const std::string& value) const {
+                     const std::string& declaration, const std::string& member) const {
     settle_for_commands();
     const Memory words = device_offsets();
     opencl([&] {
         device_->ordered_queue().enqueueCopyBuffer(words.cl(), offsets, 0, 0,
                                                    (shape_.cells() + 1) * sizeof(cl_uint));
     });
-    gather(0, shape_.cells(), words, allocate(most_records()), type, value);
+    gather(0, shape_.cells(), words, allocate(most_records()), declaration, member);
 }
 
 /// How many records the kernels insert into each cell. The report says that all of them are dropped.

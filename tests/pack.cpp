@@ -1,4 +1,6 @@
 // pack() returns in device memory what download() returns in host memory.
+#include <array>
+
 #include "support/inserts.hpp"
 #include "support/storages.hpp"
 
@@ -57,6 +59,79 @@ TEST_CASE("a member is packed alone") {
     REQUIRE(found_ids.size() == 4096);
     for (std::size_t i = 0; i < 4096; ++i)
         REQUIRE(host.records()[i] == Item{found_keys[i], found_ids[i]});
+}
+
+struct Corner {
+    cl_uchar tag;
+    cl_short2 at;
+    friend bool operator==(const Corner& a, const Corner& b) {
+        return a.tag == b.tag && a.at.s[0] == b.at.s[0] && a.at.s[1] == b.at.s[1];
+    }
+};
+CELLIST_STRUCT(Corner, tag, at);
+
+struct Shapes {
+    cl_uint id;
+    cl_float4 colour;
+    cl_float weights[3];
+    cl_ushort grid[2][3];
+    Corner corner;
+    Corner corners[2];
+};
+CELLIST_STRUCT(Shapes, id, colour, weights, grid, corner, corners);
+
+TEST_CASE("vectors, arrays and structs are packed alone") {
+    CELLIST_EACH_STORAGE(storage);
+    Inserts<Shapes> inserts;
+    for (cl_uint i = 0; i < 93; ++i) {
+        Shapes shapes{};
+        shapes.id = i;
+        const auto value = [i](std::size_t n) { return static_cast<cl_short>(10 * i + n); };
+        for (std::size_t n = 0; n < 4; ++n) shapes.colour.s[n] = value(n);
+        for (std::size_t n = 0; n < 3; ++n) shapes.weights[n] = value(n);
+        for (std::size_t n = 0; n < 6; ++n)
+            shapes.grid[n / 3][n % 3] = static_cast<cl_ushort>(value(n));
+        for (Corner* corner : {&shapes.corner, &shapes.corners[0], &shapes.corners[1]})
+            *corner = {static_cast<cl_uchar>(i), {{value(1), value(2)}}};
+        shapes.corners[1].at.s[0] = value(3);
+        inserts.add(i % 7, shapes);
+    }
+    Lists<Shapes> lists(device(), {7}, {.storage = storage});
+    Inserter(lists).build(lists, inserts);
+    lists.sort(&Shapes::id);
+    const std::vector<cl_uint> ids = lists.pack(&Shapes::id).records.download();
+    const std::vector<cl_float4> colours = lists.pack(&Shapes::colour).records.download();
+    const Packed<std::array<cl_float, 3>> packed_weights = lists.pack(&Shapes::weights);
+    const std::vector<std::array<cl_float, 3>> weights = packed_weights.records.download();
+    const std::vector<std::array<std::array<cl_ushort, 3>, 2>> grids =
+        lists.pack(&Shapes::grid).records.download();
+    const std::vector<Corner> corner = lists.pack(&Shapes::corner).records.download();
+    const std::vector<std::array<Corner, 2>> corners =
+        lists.pack(&Shapes::corners).records.download();
+    REQUIRE(ids.size() == 93);
+    std::size_t at = 0;
+    for (cl_uint cell = 0; cell < 7; ++cell)
+        for (cl_uint i = cell; i < 93; i += 7, ++at) {
+            const Shapes& shapes = inserts.records[i];
+            REQUIRE(ids[at] == i);
+            REQUIRE(
+                std::equal(std::begin(colours[at].s), std::end(colours[at].s), shapes.colour.s));
+            REQUIRE(std::equal(weights[at].begin(), weights[at].end(), shapes.weights));
+            for (std::size_t n = 0; n < 6; ++n)
+                REQUIRE(grids[at][n / 3][n % 3] == shapes.grid[n / 3][n % 3]);
+            REQUIRE(corner[at] == shapes.corner);
+            REQUIRE(std::equal(corners[at].begin(), corners[at].end(), shapes.corners));
+        }
+
+    // A kernel takes them as it declares them.
+    const Buffer<cl_float> sums(device(), 93);
+    Kernel sum(device(),
+               "kernel void sum(global const float* weights, global float* sums) {\n"
+               "    const uint i = get_global_id(0);\n"
+               "    sums[i] = weights[3 * i] + weights[3 * i + 1] + weights[3 * i + 2];\n}\n",
+               "sum");
+    sum.run(93, packed_weights.records, sums);
+    REQUIRE(sums.download()[92] == weights[92][0] + weights[92][1] + weights[92][2]);
 }
 
 TEST_CASE("packed lists that are mostly empty keep their places") {

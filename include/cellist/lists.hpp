@@ -33,6 +33,20 @@ struct Packed {
     Buffer<T> records;
 };
 
+namespace detail {
+
+/// A member as an element of a buffer: std::array for an array.
+template <class M>
+struct Element {
+    using type = M;
+};
+template <class M, std::size_t count>
+struct Element<M[count]> {
+    using type = std::array<typename Element<M>::type, count>;
+};
+
+}  // namespace detail
+
 /// A list of records T for each cell of a shape, in device memory.
 ///
 /// Kernels fill the lists concurrently, with cellist_insert; see kernels/cellist/lists.clh for what
@@ -212,12 +226,13 @@ public:
     /// A copy of all lists in device memory, one after the other, for kernels that leave the
     /// container. Does not block, but for a pending build that may still change the lists. While a build
     /// under Overflow::drop is pending, the copy has room for capacity_nodes() records.
-    [[nodiscard]] Packed<T> pack() const { return pack<T>(DeviceType<T>::name(), "record"); }
-    /// The same of a single member: an array of its own where a reader needs only the key.
+    [[nodiscard]] Packed<T> pack() const { return pack<T, T>(""); }
+    /// The same of a single member: an array of its own where a reader needs only the key. A member of
+    /// any type: scalar, vector, adapted struct; `cl_float[4]` gives `Packed<std::array<cl_float, 4>>`.
     template <class M>
-    [[nodiscard]] Packed<M> pack(M T::*member) const {
-        static_assert(detail::KnownOnDevice<M>, "pack scalars, vectors and adapted structs");
-        return pack<M>(DeviceType<M>::name(), "record." + detail::member_name(member));
+    [[nodiscard]] Packed<typename detail::Element<M>::type> pack(M T::*member) const {
+        return pack<M, typename detail::Element<M>::type>(std::string(".") +
+                                                          detail::member_name(member));
     }
 
     /// Checks that every allocated node is reached from exactly one head, exactly once. Finds any
@@ -253,20 +268,27 @@ private:
 
     template <class M>
     static detail::SortKey key_of(M T::*member, Order order) {
-        return {"record." + detail::member_name(member), sizeof(M) <= 4 ? 32u : 64u, order};
+        static_assert(detail::Scalar<M>,
+                      "records are ordered by a scalar member, or by an expression");
+        return {std::string("record.") + detail::member_name(member), sizeof(M) <= 4 ? 32u : 64u,
+                order};
     }
 
     static const BuildReport& finish(detail::Build& build) {
         return detail::ListsCore::finish(build).front();
     }
-    template <class V>
-    Packed<V> pack(const std::string& type, const std::string& value) const {
-        Packed<V> packed{{core_->device(), shape().cells() + 1}, {core_->device(), 0}};
+    /// What `member` selects of each record, of type M.
+    template <class M, class E>
+    Packed<E> pack(const std::string& member) const {
+        static_assert(detail::KnownOnDevice<M> && sizeof(E) == sizeof(M));
+        Packed<E> packed{{core_->device(), shape().cells() + 1}, {core_->device(), 0}};
         const auto allocate = [&](std::uint64_t count) -> const cl::Buffer& {
-            packed.records = Buffer<V>(core_->device(), count);
+            packed.records = Buffer<E>(core_->device(), count);
             return packed.records.cl();
         };
-        core_->pack(packed.offsets.cl(), allocate, type, value);
+        std::string declaration = DeviceType<M>::name() + " value";
+        if constexpr (std::is_array_v<M>) declaration += DeviceType<M>::extents();
+        core_->pack(packed.offsets.cl(), allocate, declaration, member);
         return packed;
     }
 

@@ -285,11 +285,10 @@ Definitions definitions_of() {
     return definitions;
 }
 
-/// The name of the member that a pointer to member means. Only scalars order records.
+/// The name of the member that a pointer to member means.
 template <Adapted T, class M>
-std::string member_name(M T::*pointer) {
-    static_assert(Scalar<M>, "records are ordered by a scalar member, or by an expression");
-    std::string name;
+const char* member_name(M T::*pointer) {
+    const char* name = "";
     std::apply(
         [&](const auto&... member) {
             (([&] {

@@ -79,11 +79,13 @@ public:
                   const std::function<void*(std::uint64_t)>& allocate) const;
 
     /// Enqueues the writing of cells + 1 offsets, calls `allocate` with the most records there can be,
-    /// and enqueues the copy of a value of each record, of an OpenCL C type, to the buffer that it
-    /// returns, one list after the other. Blocks for a pending build that may still change the lists.
+    /// and enqueues the copy of a value of each record to the buffer that it returns, one list after the
+    /// other. `declaration` declares a variable for a value in OpenCL C; `member` selects the value where
+    /// it stands after a record, e.g. ".depth", and is empty for the whole record. Blocks for a pending
+    /// build that may still change the lists.
     void pack(const cl::Buffer& offsets,
               const std::function<const cl::Buffer&(std::uint64_t)>& allocate,
-              const std::string& type, const std::string& value) const;
+              const std::string& declaration, const std::string& member) const;
 
     [[nodiscard]] const Shape& shape() const { return shape_; }
     [[nodiscard]] std::uint64_t capacity_nodes() const;
@@ -136,7 +138,8 @@ private:
     [[nodiscard]] std::uint64_t most_records() const;
     [[nodiscard]] Memory device_offsets() const;
     void gather(std::uint64_t begin, std::uint64_t end, const Memory& offsets,
-                const cl::Buffer& values, const std::string& type, const std::string& value) const;
+                const cl::Buffer& values, const std::string& declaration,
+                const std::string& member) const;
     [[nodiscard]] std::vector<cl_uint> count(const std::function<void()>& insert,
                                              BuildReport& report);
     struct PlannedSlice {
