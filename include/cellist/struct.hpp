@@ -39,16 +39,25 @@
                   " differs from OpenCL C's: name every member, in order of declaration, and use " \
                   "types that are aligned as on the device")
 
-// Whether an aggregate takes one initialiser more than members are named.
+// Whether an aggregate takes one initialiser more than members are named. Structs with constructors are
+// taken apart into as many names instead: where they have more members, the compiler says how many.
 #define CELLIST_STRUCT_HAS_MORE(type, ...)                                                         \
     []<class T>(const T*) {                                                                        \
-        if constexpr (std::is_aggregate_v<T>) return requires {                                    \
-                T{CELLIST_FOR_EACH(CELLIST_STRUCT_BRACES, type, __VA_ARGS__){}};                   \
+        if constexpr (std::is_aggregate_v<T> &&                                                    \
+                      requires { T{CELLIST_FOR_EACH(CELLIST_STRUCT_BRACES, type, __VA_ARGS__)}; }) \
+            return requires { T{CELLIST_FOR_EACH(CELLIST_STRUCT_BRACES, type, __VA_ARGS__){}}; };  \
+        else {                                                                                     \
+            (void)[](const T& cellist_value) {                                                     \
+                [[maybe_unused]] const auto& [CELLIST_STRUCT_NAMES(type, __VA_ARGS__)] =           \
+                    cellist_value;                                                                 \
             };                                                                                     \
-        else                                                                                       \
             return false;                                                                          \
+        }                                                                                          \
     }(static_cast<const type*>(nullptr))
 #define CELLIST_STRUCT_BRACES(type, member) {},
+#define CELLIST_STRUCT_NAMES(type, first, ...)                                                     \
+    cellist_member_##first CELLIST_FOR_EACH(CELLIST_STRUCT_NAME, type, __VA_ARGS__)
+#define CELLIST_STRUCT_NAME(type, member) , cellist_member_##member
 
 #define CELLIST_STRUCT_MEMBER(type, member)                                                        \
     , ::cellist::detail::member_of<type, decltype(type::member)>(#member, &type::member,           \
