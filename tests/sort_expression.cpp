@@ -62,6 +62,29 @@ TEST_CASE("what is not one expression is refused, and what is wrong with it is n
              {"record.id \xC2\xB2", "byte of 194"},
              {"cellist_sort_key(record)", "'cellist_sort_key'"},
              {"(barrier(CLK_LOCAL_MEM_FENCE), 1)", "'barrier'"},
+             {"record.id = 3", "'='"},
+             {"(record.id += 3)", "'+='"},
+             {"record.id <<= 3", "'<<='"},
+             {"record.id++", "'++'"},
+             {"- --record.id", "'--'"},
+             {"*record.values", "'*'"},
+             {"1 + *(record.values + 9)", "'*'"},
+             {"(float)*record.values", "'*'"},
+             {"(unsigned int)&record", "'&'"},
+             {"&record == 0", "'&'"},
+             {"record.id & &record", "'&'"},
+             {"record.id ? *record.values : 1", "'*'"},
+             {"((global uint*)16)[0]", "'*'"},
+             {"((uint * const)16)[0]", "'*'"},
+             {"((struct Samples*)0)->id", "'*'"},
+             {"((struct Samples * const)0)[0].id", "'const'"},
+             {"(record.values)->x", "'->'"},
+             {"atomic_inc(record.values)", "'atomic_inc'"},
+             {"atom_add(record.values, 1)", "'atom_add'"},
+             {"(vstore2((short2)(1), 0, record.values), 1)", "'vstore2'"},
+             {"frexp(record.key, record.values)", "'frexp'"},
+             {"(printf(0), 1)", "'printf'"},
+             {"__builtin_trap()", "'__builtin_trap'"},
              {std::string(10'000, '~') + "record.id", "10009"},
          }) {
         INFO(expression.substr(0, 100));
@@ -79,7 +102,10 @@ TEST_CASE("expressions may have brackets, calls, several lines and any operators
          {"max((int)record.id, 3) >= 4 ? record.values[record.id & 1] : -(~7 << 2)",
           "((((record.id))))", "record.id\n  % 3\n",
           "dot((float2)(record.key, 1.5e+1f), (float2)(1))", "record . key",
-          "record.id<1||!record.id&&1", "sizeof(record) ^ 0x1Ful"}) {
+          "record.id<1||!record.id&&1", "sizeof(record) ^ 0x1Ful",
+          "(record.id)*(record.id) & (record.id) | (uint)(2)*3 ^ sizeof(uint)*4",
+          "(record.id >= 3) == (record.id != 4) || record.id <= 5",
+          "record.values[0]*2 + max(1, 2)*3", "(float)-record.key < - -1", "1.*record.key"}) {
         INFO(expression);
         (*lists).sort_by(expression);
     }

@@ -152,10 +152,13 @@ public:
 
     /// The same by an OpenCL C expression of `record`, of integer or float type, such as
     /// "record.depth * record.depth". Throws OpenClError with the compiler's log if it does not
-    /// compile, and Error if it is more than one expression: commas outside of parentheses, quoted
-    /// text and directives are refused. Where its value differs from call to call, as after a division by
-    /// 0 or by get_global_id(), lists are in no order, and no record is lost. What a device does with
-    /// undefined operations is the expression's own risk: some processors end the program.
+    /// compile, and Error if it is more than one expression, or writes: commas outside of parentheses,
+    /// quoted text, directives, assignments, pointers and calls that write are refused. Where its value
+    /// differs from call to call, as after a division by 0 or by get_global_id(), lists are in no order,
+    /// and no record is lost.
+    ///
+    /// The expression is your code, and runs as part of the kernel. What a device does with undefined
+    /// operations is its own risk: an index outside of an array can end the process on a CPU.
     cl::Event sort_by(const std::string& expression, Order order = Order::ascending) {
         return core_->sort({expression, 64, order}, all_nodes);
     }

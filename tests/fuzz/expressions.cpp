@@ -403,14 +403,42 @@ void require_whole(const Lists<Values>& lists) {
     }
 }
 
+/// Whether a text without "&&" has * or & without an operand before it, or next to a type or a bracket.
+bool uses_pointers(std::string text) {
+    const std::string blanks = "[ \t\r\n]*", before = "(^|[^\\w)\\] \t\r\n])" + blanks;
+    const std::string type =
+        "\\b(?:bool|char|const|double|float|half|int|long|short|signed|size_t|uchar|uint|ulong|"
+        "unsigned|ushort|void|volatile)(?:2|3|4|8|16)?\\b";
+    // A call or an index stands behind an operand, a cast does not.
+    static const std::regex cast(before + "\\(" + blanks + "(?:" + type + blanks + ")*\\)");
+    for (std::string last; last != text;) {
+        last = text;
+        text = std::regex_replace(text, cast, "$1?");
+    }
+    static const std::regex refused(before + "[*&]|" + type + blanks + "[*&]|[*&]" + blanks +
+                                    "(?:" + type + "|[)\\]])");
+    return std::regex_search(text, refused);
+}
+
 /// Whether a text is refused before the compiler sees it: the same rule in other words.
 bool is_refused(const std::string& text) {
     if (text.size() > 1024) return true;
     static const std::regex allowed("[\\w\\s+\\-*/%&|^~!<>=?:.,()\\[\\]]*");
     static const std::regex refused(
-        "//|/\\*|\\?\\?|<%|%>|%:|<:|:>|\\bbarrier\\b|\\bcellist_sort_key\\b");
+        "//|/\\*|\\?\\?|<%|%>|%:|<:|:>|->|\\+\\+|--|[-+*/%&|^]=|<<=|>>=");
+    static const std::regex refused_names(
+        "\\b(?:(?:asm|barrier|cellist_sort_key|fract|frexp|lgamma_r|modf|prefetch|printf|remquo|"
+        "sincos)\\b|__|async_|atom_|atomic_|cellist_insert|(?:read_|write_)?mem_fence|vstore|"
+        "wait_group|work_group|write_image)");
     if (text.find_first_of("\v\f") != std::string::npos) return true;
     if (!std::regex_match(text, allowed) || std::regex_search(text, refused)) return true;
+    // Members may have any name, and comparisons are no assignments.
+    std::string plain = std::regex_replace(text, std::regex("\\b[0-9]\\w*\\."), "1 ");
+    plain = std::regex_replace(plain, std::regex("\\.[ \t\r\n]*\\w+"), ".m");
+    if (std::regex_search(plain, refused_names)) return true;
+    plain = std::regex_replace(plain, std::regex("[=!<>]=|&&"), "?");
+    if (plain.find('=') != std::string::npos) return true;
+    if (uses_pointers(plain)) return true;
     std::string brackets;
     for (const char c : text)
         if (std::string_view("()[]").find(c) != std::string_view::npos) brackets += c;
