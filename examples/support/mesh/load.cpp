@@ -31,7 +31,7 @@ MeshReader reader_of(const std::filesystem::path& path, std::string_view text) {
         return read_ply;
     if (text.starts_with("glTF") || extension == ".gltf" || extension == ".glb")
         return read_with_assimp;
-    if (extension == ".obj") return read_with_assimp;
+    if (extension == ".obj") return read_obj;
     if (extension == ".off") return read_off;
     if (extension == ".stl" || is_binary_stl(text)) return read_stl;
     return read_with_assimp;

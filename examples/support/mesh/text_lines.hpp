@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace support {
+
+/// Walks through the lines of an OBJ or MTL file. LF, CR and CRLF end a line; a backslash at its end
+/// continues it on the next one, but not in a comment, where it may end the path of a folder. A byte
+/// order mark is skipped.
+class TextLines {
+public:
+    explicit TextLines(std::string_view text);
+
+    /// Moves to the next line; false at the end of the text.
+    bool next();
+
+    /// The line, without its end. Valid until next().
+    [[nodiscard]] std::string_view line() const { return line_; }
+    /// The number of the line's first part. The first line is 1.
+    [[nodiscard]] std::uint64_t number() const { return number_; }
+    /// Whether the text ends within this line, so that it may have been cut off.
+    [[nodiscard]] bool is_open() const { return is_open_; }
+    /// Whether a backslash promises more, and the text ends.
+    [[nodiscard]] bool is_unfinished() const { return is_unfinished_; }
+
+private:
+    std::string_view physical_line();
+
+    std::string_view text_;
+    std::size_t at_ = 0;
+    std::uint64_t physical_lines_ = 0, number_ = 0;
+    std::string_view line_;
+    std::string joined_;
+    bool is_open_ = false, is_unfinished_ = false;
+};
+
+/// Replaces `words` by the words of a line: blanks and tabs separate them.
+void split(std::string_view line, std::vector<std::string_view>& words);
+
+/// The line up to the first '#'.
+[[nodiscard]] std::string_view without_comment(std::string_view line);
+
+/// What follows the first word of a line, which may have blanks and '#' within.
+[[nodiscard]] std::string_view name_of(std::string_view line);
+
+}  // namespace support
