@@ -29,8 +29,7 @@ MeshReader reader_of(const std::filesystem::path& path, std::string_view text) {
     const std::string extension = lower_extension(path);
     if (text.starts_with("ply\n") || text.starts_with("ply\r") || extension == ".ply")
         return read_ply;
-    if (text.starts_with("glTF") || extension == ".gltf" || extension == ".glb")
-        return read_with_assimp;
+    if (text.starts_with("glTF") || extension == ".gltf" || extension == ".glb") return read_gltf;
     if (extension == ".obj") return read_obj;
     if (extension == ".off") return read_off;
     if (extension == ".stl" || is_binary_stl(text)) return read_stl;
