@@ -7,9 +7,8 @@
 
 namespace triangle_grid {
 
-/// Whether the segment meets any of the triangles, by asking every one, in double precision on the
-/// CPU. What counts as meeting is defined in segment.clh; determinants that double precision cannot
-/// tell from 0 are 0 there and here.
+/// Whether the segment meets any of the triangles, by asking every one, exactly, on the CPU. What
+/// counts as meeting is defined in segment.clh.
 [[nodiscard]] bool meets_any(const Segment& segment, std::span<const grid::GridTriangle> triangles);
 
 }  // namespace triangle_grid

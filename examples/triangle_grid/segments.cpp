@@ -64,7 +64,7 @@ private:
         return static_cast<int>(random_() % static_cast<std::uint32_t>(std::max(limit, 1)));
     }
     [[nodiscard]] float at_face(int k, int cell) const {
-        return cells_.origin[k] + static_cast<float>(cell) / cells_.cells_per_unit;
+        return cells_.origin[k] + static_cast<float>(cell * grid::cell_side(cells_));
     }
     float face(int k) { return at_face(k, below(cells_.extent[k] + 1)); }
     // In the grid, or a little outside of it.
@@ -73,7 +73,7 @@ private:
         for (int k = 0; k < 3; ++k) {
             const float part = static_cast<float>(random_() >> 8) * 0x1p-24F * 1.2F - 0.1F;
             point[k] = cells_.origin[k] +
-                       part * static_cast<float>(cells_.extent[k]) / cells_.cells_per_unit;
+                       part * static_cast<float>(cells_.extent[k] * grid::cell_side(cells_));
         }
         return point;
     }

@@ -121,6 +121,57 @@ TEST_CASE("segments that end at a triangle, in its plane, or before it") {
     CHECK(hits({0.25F, 0.5F, 3e38F}, {0.25F, 0.5F, -3e38F}) == 1);
 }
 
+TEST_CASE("segments whose ends are as far away as floats go") {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    for (const float scale : {1e-31F, 1.0F, 1e31F}) {
+        Triangles triangles = triangle_grid::triangles_of(triangle_grid::make_knot());
+        triangles.resize(600);
+        for (GridTriangle& t : triangles)
+            for (glm::vec3* corner : {&t.a, &t.b, &t.c}) *corner *= scale;
+        const auto point = [&] { return glm::vec3(unit(random), unit(random), unit(random)); };
+        const auto in_mesh = [&] {
+            const GridTriangle& t = triangles[random() % triangles.size()];
+            return (t.a + t.b + t.c) / 3.0F;
+        };
+        std::vector<Segment> segments;
+        for (int exponent = 45; exponent < 127; ++exponent)
+            for (int i = 0; i < 12; ++i) {
+                glm::vec3 far = std::ldexp(1.0F, exponent) * point();
+                if (i % 4 == 1) far[i % 3] = in_mesh()[i % 3];
+                if (i % 4 == 2)
+                    far = std::ldexp(1.0F, exponent) * glm::vec3(glm::ivec3(2.0F * point()));
+                const glm::vec3 through = in_mesh();
+                // One end near, and both ends far: through the mesh exactly where floats can say so.
+                segments.push_back({far, through - 0.25F * scale * glm::normalize(point())});
+                segments.push_back({i % 2 == 0 ? -far : 2.0F * through - far, far});
+            }
+        INFO(scale);
+        require_same(triangles, grid::cells_around(triangles, 32), segments);
+    }
+}
+
+TEST_CASE("a far end does not change the answer near the mesh") {
+    // Towards a square from every distance: the exact answer is known by construction.
+    const Triangles triangles = sheet(8, 0);
+    const grid::GridCells cells = grid::cells_around(triangles, 16);
+    std::vector<Segment> segments;
+    for (int exponent = 0; exponent < 127; ++exponent) {
+        const float far = std::ldexp(1.0F, exponent);
+        for (const float side : {far, -far}) {
+            segments.push_back({{3.25F, 4.75F, side}, {3.25F, 4.75F, -0.5F * side}});
+            segments.push_back({{4, 4, side}, {4, 4, -side}});
+            segments.push_back({{side, side, side}, {-side, -side, -side}});
+        }
+    }
+    for (const cl_uint hit : ask(triangles, cells, segments, Storage::counted)) REQUIRE(hit == 1);
+    for (Segment& segment : segments) {
+        segment.from.x += 9;
+        segment.to.x += 9;
+    }
+    require_same(triangles, cells, segments);
+}
+
 TEST_CASE("no triangle, one point, one plane, and triangles that are not finite") {
     require_same({}, 8, 90);
     require_same({{glm::vec3(2), glm::vec3(2), glm::vec3(2)}}, 8, 90);
@@ -133,7 +184,7 @@ TEST_CASE("no triangle, one point, one plane, and triangles that are not finite"
 }
 
 TEST_CASE("meshes far from the origin, and very large or small") {
-    for (const float scale : {1e-18F, 1e-6F, 1e12F, 1e30F})
+    for (const float scale : {1e-31F, 1e-18F, 1e-6F, 1e12F, 1e30F})
         for (const float shift : {0.0F, 1e4F}) {
             Triangles triangles = sheet(6, 0.5F);
             for (GridTriangle& t : triangles)

@@ -4,8 +4,9 @@
 
 // The cells from `low` to `high` along an axis. Both round the same way as the walk.
 static int2 grid_cells_between(float low, float high, const GridCells cells, int k) {
-    const float first = (low - cells.origin[k]) * cells.cells_per_unit - GRID_MARGIN;
-    const float last = (high - cells.origin[k]) * cells.cells_per_unit + GRID_MARGIN;
+    const float origin = cells.origin[k] * cells.unit;
+    const float first = (low * cells.unit - origin) * cells.cells_per_unit - GRID_MARGIN;
+    const float last = (high * cells.unit - origin) * cells.cells_per_unit + GRID_MARGIN;
     const float most = (float)(cells.extent[k] - 1);
     return (int2)((int)clamp(floor(first), 0.0f, most), (int)clamp(floor(last), 0.0f, most));
 }

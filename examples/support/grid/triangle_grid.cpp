@@ -50,16 +50,25 @@ GridCells cells_around(std::span<const GridTriangle> triangles, int longest) {
     if (!(low.x <= high.x)) low = high = glm::dvec3(0);
     const glm::dvec3 size = high - low;
     const double side = std::max({size.x, size.y, size.z});
-    // A single point still has a cell around it, and neither the scale nor its inverse overflows.
-    const double cell = std::clamp(side / longest, 1e-30, 1e30);
+    const glm::dvec3 farthest = glm::max(glm::abs(low), glm::abs(high));
+    // Brings coordinates to 1 or less, but for those beyond 2^100.
+    const double reach = std::max({farthest.x, farthest.y, farthest.z});
+    const int exponent = reach > 0 ? std::clamp(std::ilogb(reach) + 1, -100, 100) : 0;
+    // A single point still has a cell around it.
+    const double cell = side > 0 ? side / longest : std::max(reach, std::ldexp(1.0, exponent));
 
     GridCells cells{};
-    cells.cells_per_unit = static_cast<cl_float>(1 / cell);
+    cells.unit = static_cast<cl_float>(std::ldexp(1.0, -exponent));
+    cells.cells_per_unit = static_cast<cl_float>(std::ldexp(1 / cell, exponent));
     for (int k = 0; k < 3; ++k) {
         cells.origin[k] = static_cast<cl_float>(low[k]);
         cells.extent[k] = std::clamp(static_cast<cl_int>(std::ceil(size[k] / cell)), 1, longest);
     }
     return cells;
+}
+
+double cell_side(const GridCells& cells) {
+    return 1 / (static_cast<double>(cells.cells_per_unit) * static_cast<double>(cells.unit));
 }
 
 TriangleGrid::TriangleGrid(const cellist::Device& device, std::span<const GridTriangle> triangles,

@@ -23,13 +23,18 @@ struct GridEntry {
 };
 CELLIST_STRUCT(GridEntry, triangle);
 
-/// Where the cells are: cubes of the same size.
+/// Where the cells are: cubes of the same size. Coordinates are multiplied by `unit` first, so that
+/// neither very large nor very small ones leave the range of floats.
 struct GridCells {
     cl_float origin[3];
-    cl_float cells_per_unit;
+    cl_float unit;            ///< a power of 2
+    cl_float cells_per_unit;  ///< of coordinates that were multiplied by `unit`
     cl_int extent[3];
 };
-CELLIST_STRUCT(GridCells, origin, cells_per_unit, extent);
+CELLIST_STRUCT(GridCells, origin, unit, cells_per_unit, extent);
+
+/// The side of a cell.
+[[nodiscard]] double cell_side(const GridCells& cells);
 
 /// Cells around the bounding box of the triangles, `longest` along its longest side. Triangles that
 /// are not finite do not count. Throws InputError unless 1 <= longest <= GRID_EXTENT_MAX.
