@@ -16,13 +16,25 @@ double srgb_from_linear(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
 
+namespace {
+
+// Evenly distributed in [0, 1), from a counter (PCG hash).
+double noise(std::uint32_t counter) {
+    const std::uint32_t state = counter * 747796405U + 2891336453U;
+    const std::uint32_t word = ((state >> ((state >> 28) + 4)) ^ state) * 277803737U;
+    return static_cast<double>((word >> 22) ^ word) * 0x1p-32;
+}
+
+}  // namespace
+
 std::vector<std::uint8_t> srgb_bytes(std::span<const cl_float4> pixels) {
     std::vector<std::uint8_t> bytes;
     bytes.reserve(pixels.size() * 3);
     for (const cl_float4& pixel : pixels)
         for (int channel = 0; channel < 3; ++channel) {
             const double encoded = srgb_from_linear(static_cast<double>(pixel.s[channel]));
-            bytes.push_back(static_cast<std::uint8_t>(std::lround(255 * encoded)));
+            const double dither = noise(static_cast<std::uint32_t>(bytes.size()));
+            bytes.push_back(static_cast<std::uint8_t>(std::min(255.0, 255 * encoded + dither)));
         }
     return bytes;
 }

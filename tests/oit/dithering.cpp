@@ -1,0 +1,36 @@
+// 8-bit pictures are dithered: gradients have no bands, and means are right.
+#include <cmath>
+#include <cstdlib>
+#include <vector>
+
+#include "image.hpp"
+#include "support/catch.hpp"
+
+namespace cellist::test {
+namespace {
+
+TEST_CASE("a byte is off by less than 1, and the mean of many is right") {
+    constexpr std::size_t count = 40000;
+    for (const float linear : {0.0F, 0.0123F, 0.0126F, 0.2F, 0.7F, 1.0F}) {
+        const std::vector<cl_float4> pixels(count, {{linear, linear, linear, 1}});
+        const std::vector<std::uint8_t> bytes = support::srgb_bytes(pixels);
+        const double exact = 255 * support::srgb_from_linear(static_cast<double>(linear));
+        double sum = 0;
+        for (const std::uint8_t byte : bytes) {
+            REQUIRE(std::abs(byte - exact) < 1);
+            sum += byte;
+        }
+        CHECK(std::abs(sum / static_cast<double>(bytes.size()) - exact) < 0.01);
+        CHECK(bytes == support::srgb_bytes(pixels));
+    }
+}
+
+TEST_CASE("values beyond the range, and NaN, are bytes of the range") {
+    const float none = std::nanf("");
+    const std::vector<cl_float4> pixels(100, {{-1, 2, none, 1}});
+    const std::vector<std::uint8_t> bytes = support::srgb_bytes(pixels);
+    for (std::size_t i = 0; i < bytes.size(); ++i) CHECK(bytes[i] == (i % 3 == 1 ? 255 : 0));
+}
+
+}  // namespace
+}  // namespace cellist::test
