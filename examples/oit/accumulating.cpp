@@ -12,7 +12,7 @@ std::string accumulating_text(std::string_view source) {
 std::string accumulating_refusal(const Frame& frame, const Needs& needs) {
     if (needs.blends != 0 && needs.blends != 1U << static_cast<std::uint32_t>(Blend::over))
         return "it knows surfaces that cover what is behind them, and no other kind of blending";
-    if (frame.quality.depth_range) return "it does not blend ranges of depth";
+    if (frame.quality.depth_range) return "it has no depths in each sample";
     if (frame.quality.layers) return "it blends all layers at once";
     return {};
 }

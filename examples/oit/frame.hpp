@@ -27,7 +27,7 @@ struct BlendFunction {
 struct Quality {
     int samples = 1;  ///< of a pixel: 1, 2, 4 or 8
     Resolve resolve = Resolve::per_pixel;
-    /// Fragments whose depths overlap in a pixel are blended as if they met in it (Carpenter 1984).
+    /// Fragments have the slopes of their depth, and each sample blends them in the order that it sees.
     bool depth_range = false;
     NodeFormat format = NodeFormat::float32;
     DepthScale depth_scale = DepthScale::linear;

@@ -224,7 +224,7 @@ FrameArguments::FrameArguments(CLI::App& app, const FrameOptions& options)
     add("--samples", samples_, "samples of a pixel: 1, 2, 4 or 8", "N");
     add("--resolve", resolve_, "where samples are blended: pixel or sample", "WHERE");
     app.add_flag("--depth-range", depth_range_,
-                 "blend surfaces that meet within a pixel by their least and greatest depths");
+                 "order surfaces that meet within a pixel by their depths in each sample");
     add("--depth-scale", depth_scale_,
         "what is stored as depth: linear (the depth) or reversed (1 / depth)", "S");
     add("--view", view_, "direction to look from, in degrees", "AZIMUTH,ELEVATION");

@@ -53,6 +53,20 @@ std::string define(const std::string& name, auto value) {
     return "#define " + name + " " + std::to_string(value) + "\n";
 }
 
+// Of the samples, in pixels from the centre.
+std::string offsets_text(int samples) {
+    std::string text;
+    for (const raster::SampleOffset& offset : raster::sample_offsets(samples)) {
+        const auto part = [](int i) {
+            return std::to_string(i * RASTER_OFFSET_UNIT) + ".0f / " +
+                   std::to_string(RASTER_SUBPIXELS) + ".0f";
+        };
+        text += (text.empty() ? "(float2)(" : ", (float2)(") + part(offset.x) + ", " +
+                part(offset.y) + ")";
+    }
+    return text;
+}
+
 }  // namespace
 
 bool Needs::blend_varies() const { return std::popcount(blends) > 1 || has(Blend::absorb); }
@@ -120,7 +134,9 @@ std::string defines_of(const Frame& frame, const Needs& needs) {
     if (needs.transmittance_is_coloured()) text += "#define OIT_COLOURED\n";
     if (quality.resolve == Resolve::per_sample && quality.samples > 1)
         text += "#define OIT_PER_SAMPLE\n";
-    if (quality.depth_range) text += "#define OIT_DEPTH_RANGE\n";
+    if (quality.depth_range)
+        text +=
+            "#define OIT_DEPTH_RANGE\n#define OIT_OFFSETS " + offsets_text(quality.samples) + "\n";
     if (quality.epsilon > 0) text += "#define OIT_EARLY_END\n";
     if (quality.reduce > 1) text += "#define OIT_REDUCED\n";
     if (frame.memory_bytes) text += "#define OIT_SLICES\n";

@@ -63,7 +63,7 @@ struct NodeLayout {
     NodeField coverage = {};  ///< a bit for each sample
     NodeField blend = {};     ///< Blend; 6 where a surface is left
     NodeField depth_range =
-        {};  ///< two halves: how far the least and the greatest depth are from depth
+        {};  ///< two halves: how much 1 / depth grows a pixel, along x and y
 
     /// The depth in a key. `needs` gives the range of quantised depths.
     [[nodiscard]] double depth_of(std::uint32_t key, const Needs& needs) const;

@@ -10,7 +10,7 @@ std::string peeling_text(std::string_view source) {
 }
 
 std::string peeling_refusal(const Frame& frame, const Needs&) {
-    if (frame.quality.depth_range) return "it does not blend ranges of depth";
+    if (frame.quality.depth_range) return "it has no depths in each sample";
     if (frame.quality.samples > 1 && frame.quality.resolve == Resolve::per_sample)
         return "it resolves samples by pixel";
     return {};

@@ -1,6 +1,7 @@
 #include "reference.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -170,8 +171,8 @@ private:
                                    blend,
                                    !cover.front,
                                    visible,
-                                   cover.least_depth,
-                                   cover.greatest_depth};
+                                   cover.sample_depth};
+        if (frame_.quality.depth_range) fragment.depth = mean_depth(fragment);
         if (blend == Blend::absorb) {
             fragment.alpha = 1;
             fragment.colour = to_double(material.front_tint);
@@ -197,6 +198,14 @@ private:
             opacity += cover.weight[j] *
                        static_cast<double>(model.opacities[model.mesh.triangles[triangle][j]]);
         return alpha * opacity;
+    }
+
+    // At the mean of the samples that are visible: 1 / depth is linear in the image.
+    [[nodiscard]] double mean_depth(const ReferenceFragment& fragment) const {
+        double sum = 0;
+        for (std::size_t s = 0; s < samples_; ++s)
+            if ((fragment.coverage >> s & 1) != 0) sum += 1 / fragment.sample_depth[s];
+        return std::popcount(fragment.coverage) / sum;
     }
 
     void add(std::size_t pixel, const ReferenceFragment& fragment) {
@@ -226,6 +235,34 @@ private:
             reference_.fragments.begin() + static_cast<std::ptrdiff_t>(reference_.offsets[p + 1]));
         std::sort(list.begin(), list.end(),
                   [](const ReferenceFragment& a, const ReferenceFragment& b) {
+    // The fragments that cover a sample, nearest first.
+    [[nodiscard]] std::vector<const ReferenceFragment*> order_in(
+        std::size_t p, std::span<const ReferenceFragment> list, std::size_t s) {
+        std::vector<const ReferenceFragment*> order;
+        for (const ReferenceFragment& fragment : list)
+            if ((fragment.coverage >> s & 1) != 0) order.push_back(&fragment);
+        if (!frame_.quality.depth_range) return order;
+        std::ranges::stable_sort(order, {}, [&](const ReferenceFragment* fragment) {
+            return fragment->sample_depth[s];
+        });
+        for (std::size_t i = 0; i + 1 < order.size(); ++i)
+            for (std::size_t j = i + 1;
+                 j < order.size() && slopes_too_close(*order[i], *order[j], s); ++j)
+                if (order_matters(*order[i], *order[j])) reference_.ambiguous[p] = true;
+        return order;
+    }
+
+    // Whether depths in a sample may have the wrong order for the slopes that nodes hold as halves.
+    [[nodiscard]] bool slopes_too_close(const ReferenceFragment& a, const ReferenceFragment& b,
+                                        std::size_t s) const {
+        constexpr double half = 0x1p-10;
+        const double steep =
+            std::abs(a.sample_depth[s] - a.depth) + std::abs(b.sample_depth[s] - b.depth);
+        const double most = std::max(a.sample_depth[s], b.sample_depth[s]);
+        return std::abs(a.sample_depth[s] - b.sample_depth[s]) <=
+               layout_.depth_resolution(needs_).at(most) + half * steep;
+    }
+
                       return std::tie(a.depth, a.colour.x, a.colour.y, a.colour.z) <
                              std::tie(b.depth, b.colour.x, b.colour.y, b.colour.z);
                   });
@@ -238,17 +275,9 @@ private:
 
         std::vector<ReferenceLight> lights(
             samples_, ReferenceLight(glm::length(shading.ray(x, y)), options_));
-        for (std::size_t i = 0; i < layers; ++i) {
-            const bool both = frame_.quality.depth_range && i + 1 < layers &&
-                              list[i].greatest_depth > list[i + 1].least_depth;
-            for (std::size_t s = 0; s < samples_; ++s) {
-                if (both)
-                    lights[s].add_both(list[i], list[i + 1], s);
-                else
-                    lights[s].add(list[i], s);
-            }
-            if (both) ++i;
-        }
+        for (std::size_t s = 0; s < samples_; ++s)
+            for (const ReferenceFragment* fragment : order_in(p, list.first(layers), s))
+                lights[s].add(*fragment);
         dvec3 sum(0);
         for (std::size_t s = 0; s < samples_; ++s) {
             const OpaqueSample& behind = opaque_[p * samples_ + s];

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -17,7 +18,7 @@ struct ReferenceFragment {
     Blend blend;
     bool leaves;  ///< of Blend::absorb: the medium ends here
     std::uint32_t coverage;
-    double least_depth, greatest_depth;
+    std::array<double, 8> sample_depth;  ///< of the covered samples
 };
 
 /// A frame in double precision.
@@ -48,7 +49,8 @@ struct ReferenceOptions {
 [[nodiscard]] double swap_error(const ReferenceFragment& a, const ReferenceFragment& b);
 
 /// Draws a frame on the CPU: snapped geometry as on the device, everything else in double
-/// precision, exactly sorted. All fragments of Quality::layers are blended, whatever epsilon and
+/// precision, exactly sorted: by the depths at the mean of the covered samples, as nodes have them,
+/// or with Quality::depth_range in each sample by the depths there. All fragments of Quality::layers are blended, whatever epsilon and
 /// node format are. Throws InputError where a user's function blends on the device and none is given
 /// for here. One thread.
 [[nodiscard]] Reference draw_reference(const Frame& frame, const ReferenceOptions& options = {});

@@ -14,27 +14,7 @@ void ReferenceLight::pass_media(double depth) {
     if (depth_ > 0) transmittance_ *= glm::exp(-extinction_ * ((depth - depth_) * ray_length_));
 }
 
-void ReferenceLight::add(const ReferenceFragment& fragment, std::size_t sample) {
-    if ((fragment.coverage >> sample & 1) != 0) blend(fragment);
-}
-
-void ReferenceLight::add_both(const ReferenceFragment& front, const ReferenceFragment& back,
-                              std::size_t sample) {
-    ReferenceLight swapped = *this;
-    add(front, sample);
-    add(back, sample);
-    swapped.add(back, sample);
-    swapped.add(front, sample);
-    const double overlap = back.greatest_depth - front.least_depth;
-    const double both =
-        front.greatest_depth - front.least_depth + back.greatest_depth - back.least_depth;
-    const double part = std::clamp(overlap / both, 0.0, 1.0);
-    colour_ = glm::mix(swapped.colour_, colour_, part);
-    transmittance_ = glm::mix(swapped.transmittance_, transmittance_, part);
-    depth_ = back.depth;
-}
-
-void ReferenceLight::blend(const ReferenceFragment& fragment) {
+void ReferenceLight::add(const ReferenceFragment& fragment) {
     const double distance = depth_ > 0 ? (fragment.depth - depth_) * ray_length_ : 0;
     pass_media(fragment.depth);
     depth_ = fragment.depth;

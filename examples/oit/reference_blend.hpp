@@ -15,16 +15,12 @@ public:
     ReferenceLight(double ray_length, const ReferenceOptions& options)
         : ray_length_(ray_length), options_(options) {}
 
-    /// One more fragment, if it covers the sample.
-    void add(const ReferenceFragment& fragment, std::size_t sample);
-    /// Two whose ranges of depth overlap, in both orders, each for its part of the pixel.
-    void add_both(const ReferenceFragment& front, const ReferenceFragment& back,
-                  std::size_t sample);
+    /// One more fragment, behind all so far.
+    void add(const ReferenceFragment& fragment);
     /// The colour with what is behind, at a depth that may be infinite.
     [[nodiscard]] glm::dvec3 end(const glm::dvec3& behind, double depth);
 
 private:
-    void blend(const ReferenceFragment& fragment);
     void pass_media(double depth);
 
     double ray_length_;

@@ -52,8 +52,7 @@ double sum(const std::array<double, 3>& v) { return v[0] + v[1] + v[2]; }
 // What the triangle covers of a pixel; no samples where it covers nothing.
 ReferenceCover cover_of(const Triangle& triangle, int x, int y,
                         std::span<const raster::SampleOffset> offsets) {
-    ReferenceCover cover{
-        x, y, 0, 0, std::numeric_limits<double>::infinity(), 0, {}, triangle.front};
+    ReferenceCover cover{x, y, 0, 0, {}, {}, triangle.front};
     std::array<double, 3> mean{};
     int covered = 0;
     for (std::size_t s = 0; s < offsets.size(); ++s) {
@@ -68,9 +67,7 @@ ReferenceCover cover_of(const Triangle& triangle, int x, int y,
         const std::array<double, 3> here{static_cast<double>(edge[0]), static_cast<double>(edge[1]),
                                          static_cast<double>(edge[2])};
         for (std::size_t i = 0; i < 3; ++i) mean[i] += here[i];
-        const double depth = 1 / sum(triangle.parts(here));
-        cover.least_depth = std::min(cover.least_depth, depth);
-        cover.greatest_depth = std::max(cover.greatest_depth, depth);
+        cover.sample_depth[s] = 1 / sum(triangle.parts(here));
     }
     if (covered == 0) return cover;
     for (double& edge : mean) edge /= covered;

@@ -13,7 +13,8 @@ namespace oit {
 struct ReferenceCover {
     int x, y;
     std::uint32_t coverage;
-    double depth, least_depth, greatest_depth;
+    double depth;
+    std::array<double, 8> sample_depth;  ///< of the covered samples
     std::array<double, 3> weight;
     bool front;
 };

@@ -69,23 +69,56 @@ static inline float oit_light_difference(const OitLight* a, const OitLight* b, f
     return difference;
 }
 
-// How much the image changes at most if two layers change places. brightest: of the light behind.
-// distance: through what is behind.
-static inline float oit_exchange(const OitPixel* pixel, const OitBlended* front,
-                                 const OitFragment* fragment, float brightest, float distance) {
-    float effect = 0.0f;
+// How far apart two layers are in a sample, of which the first is in front at the mean of its samples.
+#ifdef OIT_DEPTH_RANGE
+static inline float oit_reach(const OitFragment* fragment) {
+    return fabs(fragment->slope_x) + fabs(fragment->slope_y);
+}
+// In any sample.
+static inline float oit_least_depth(const OitFragment* fragment) {
+    return fragment->depth / (1.0f + oit_reach(fragment));
+}
+static inline float oit_greatest_depth(const OitFragment* fragment) {
+    return fragment->depth / fmax(1.0f - oit_reach(fragment), 0x1p-20f);
+}
+
+static inline float oit_depth_at(const OitFragment* fragment, int sample) {
+    const float2 move = oit_offsets[sample] - oit_mean_offset(fragment->coverage);
+    return fragment->depth / (1.0f + fragment->slope_x * move.x + fragment->slope_y * move.y);
+}
+
+static inline float oit_gap(const OitFragment* front, const OitFragment* back, int sample) {
+    const float a = oit_depth_at(front, sample), b = oit_depth_at(back, sample);
+    // Nodes have slopes as halves.
+    return fabs(a - b) - 0x1p-10f * (fabs(a - front->depth) + fabs(b - back->depth));
+}
+#else
+#define oit_least_depth(fragment) ((fragment)->depth)
+#define oit_greatest_depth(fragment) ((fragment)->depth)
+#define oit_gap(front, back, sample) ((back)->depth - (front)->depth)
+#endif
+
+// Adds how much the image changes at most if two layers change places, in the samples in which they
+// are closer than can be told apart. brightest: of the light behind. distance: through what is behind.
+static inline void oit_exchange(OitOrder* order, const OitPixel* pixel, const OitBlended* front,
+                                const OitFragment* fragment, float brightest, float distance,
+                                const float* close) {
     OitFragment back = *fragment;
     back.depth = front->fragment.depth;
     for (int i = 0; i < OIT_LIGHTS; ++i) {
         if (!oit_covers(pixel, &front->fragment, i) || !oit_covers(pixel, &back, i)) continue;
+        const float gap = oit_gap(&front->fragment, fragment, pixel->first_sample + i);
+        if (gap > fmax(close[0], fmax(close[1], close[2]))) continue;
         OitLight ordered = front->before.of[i], swapped = ordered;
         oit_blend(&ordered, &front->fragment, pixel->ray_length);
         oit_blend(&ordered, &back, pixel->ray_length);
         oit_blend(&swapped, &back, pixel->ray_length);
         oit_blend(&swapped, &front->fragment, pixel->ray_length);
-        effect += oit_light_difference(&ordered, &swapped, brightest, distance);
+        const float effect =
+            oit_light_difference(&ordered, &swapped, brightest, distance) / (float)OIT_LIGHTS;
+        for (int kind = 0; kind < OIT_DEPTHS_OF_NODES; ++kind)
+            if (gap <= close[kind]) order->effect[kind] += effect;
     }
-    return effect / (float)OIT_LIGHTS;
 }
 
 // The next layer of a pixel.
@@ -94,27 +127,20 @@ static inline void oit_next_layer(OitOrder* order, const OitPixel* pixel,
                                   const OitFragment* fragment, float brightest, float last_depth) {
     const float distance = fmax(last_depth - fragment->depth, 0.0f) * pixel->ray_length;
     float close[OIT_DEPTHS_OF_NODES];
-    float closest = 0.0f;
-    for (int kind = 0; kind < OIT_DEPTHS_OF_NODES; ++kind) {
+    for (int kind = 0; kind < OIT_DEPTHS_OF_NODES; ++kind)
         close[kind] = oit_resolution(resolution, kind, fragment->depth);
-        closest = fmax(closest, close[kind]);
-    }
     for (uint back = 1; back <= min(order->count, (uint)OIT_WINDOW); ++back) {
         const OitBlended* front = &order->layers[(order->count - back) % OIT_WINDOW];
-        const float gap = fragment->depth - front->fragment.depth;
-        if (gap > closest) break;
-        const float effect = oit_exchange(pixel, front, fragment, brightest, distance);
-        for (int kind = 0; kind < OIT_DEPTHS_OF_NODES; ++kind)
-            if (gap <= close[kind]) order->effect[kind] += effect;
+        oit_exchange(order, pixel, front, fragment, brightest, distance, close);
     }
     // With more than that, all light that gets there may change.
     for (int kind = 0; kind < OIT_DEPTHS_OF_NODES; ++kind)
-        if (fragment->depth - order->lost_depth <= close[kind])
+        if (oit_least_depth(fragment) - order->lost_depth <= close[kind])
             order->effect[kind] += order->lost_reaches * brightest;
 
     OitBlended* place = &order->layers[order->count % OIT_WINDOW];
-    if (order->count >= OIT_WINDOW) {
-        order->lost_depth = place->fragment.depth;
+    if (order->count >= OIT_WINDOW && oit_greatest_depth(&place->fragment) >= order->lost_depth) {
+        order->lost_depth = oit_greatest_depth(&place->fragment);
         order->lost_reaches = 0.0f;
         for (int i = 0; i < OIT_LIGHTS; ++i)
             order->lost_reaches =

@@ -61,7 +61,7 @@ struct Placed {
 /// What passes and the tiles are compiled for.
 struct Sampling {
     int samples = 1;           ///< of a pixel: 1, 2, 4 or 8
-    bool depth_range = false;  ///< fragments have a least and a greatest depth
+    bool depth_range = false;  ///< fragments have slopes of their depth
 };
 
 /// The kernels that every drawing needs, built once for a device.
