@@ -90,7 +90,7 @@ void check(const oit::Frame& frame) {
         require(material.paint == static_cast<cl_uint>(oit::Paint::shaded), "shaded surfaces");
     }
     for (const oit::Model& model : frame.scene.models)
-        require(model.opacities.empty(), "surfaces of one opacity");
+        require(model.opacities.empty() && model.tints.empty(), "surfaces of one colour");
 }
 
 }  // namespace

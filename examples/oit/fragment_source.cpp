@@ -51,6 +51,16 @@ std::vector<cl_float> opacities_of(const Scene& scene) {
     return opacities;
 }
 
+std::vector<cl_float> tints_of(const Scene& scene) {
+    std::vector<cl_float> tints;
+    for (const Model& model : scene.models) {
+        if (model.tints.empty()) tints.insert(tints.end(), 3 * model.mesh.positions.size(), 1.0F);
+        for (const glm::vec3& tint : model.tints)
+            tints.insert(tints.end(), {tint.x, tint.y, tint.z});
+    }
+    return tints;
+}
+
 OitFrame constants_of(const Frame& frame, const Needs& needs) {
     return {.look = frame.scene.look,
             .alpha = needs.alpha,
@@ -93,7 +103,7 @@ FragmentSource::Opaque::Passes::Passes(const FragmentSource& source)
             joined({source.defines_, kernels::shading_clh, kernels::opaque_owner_cl}),
             "opaque_owner.cl", cellist::type<OitFrame>),
       colour(source.device_, sampling_of(source.frame_.quality),
-             joined({source.defines_, kernels::shading_clh, kernels::normal_clh,
+             joined({source.defines_, kernels::shading_clh, kernels::corners_clh,
                      kernels::opaque_colour_cl}),
              "opaque_colour.cl", cellist::type<OitFrame>, cellist::type<Material>),
       owners(source.device_, source.samples()) {}
@@ -119,6 +129,7 @@ FragmentSource::FragmentSource(const cellist::Device& device, const Frame& frame
       screen_(screen_of(frame, resolves_samples(frame.quality) ? samples_of(frame.quality) : 1)),
       image_(device, (is_reduced(frame) ? 2 : 1) * frame.pixels()) {
     if (needs_.opacities) opacities_.emplace(device, opacities_of(frame.scene));
+    if (needs_.tints) tints_.emplace(device, tints_of(frame.scene));
     if (needs_.opaque) opaque_ = std::make_unique<Opaque>(*this);
     if (resolves_samples(frame.quality)) {
         sample_image_.emplace(device, frame.pixels() * samples_of(frame.quality));
@@ -150,8 +161,10 @@ void FragmentSource::prepare() {
     passes.owners.fill(no_owner);
     passes.triangles.draw(passes.depth, o.depth_bits);
     passes.triangles.draw(passes.owner, passes.owners, o.depth_bits);
-    passes.triangles.draw(passes.colour, passes.owners, o.depth_bits, o.colour, constants_,
-                          materials_, geometry_.normals());
+    with(tints_, [&](const auto&... tints) {
+        passes.triangles.draw(passes.colour, passes.owners, o.depth_bits, o.colour, constants_,
+                              materials_, geometry_.normals(), tints...);
+    });
 }
 
 void FragmentSource::set_slice(const cellist::Slice& slice) {
@@ -178,7 +191,7 @@ cellist::Shape FragmentSource::shape() const {
 raster::Sampling FragmentSource::sampling() const { return sampling_of(frame_.quality); }
 
 std::string FragmentSource::pass_text(std::string_view source) const {
-    return joined({defines_, "#define OIT_PASS", kernels::shading_clh, kernels::normal_clh,
+    return joined({defines_, "#define OIT_PASS", kernels::shading_clh, kernels::corners_clh,
                    kernels::fragment_clh, kernels::node_clh, source, kernels::surface_clh});
 }
 
@@ -197,6 +210,7 @@ std::uint64_t FragmentSource::device_bytes() const {
                           transparent_.device_bytes() + materials_.size() * sizeof(Material) +
                           image_.size() * sizeof(cl_float4);
     if (opacities_) bytes += opacities_->size() * sizeof(cl_float);
+    if (tints_) bytes += tints_->size() * sizeof(cl_float);
     if (sample_image_) bytes += sample_image_->size() * sizeof(cl_float4);
     if (!opaque_) return bytes;
     bytes +=

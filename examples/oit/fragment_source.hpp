@@ -58,18 +58,14 @@ public:
     /// Enqueues a pass over all transparent fragments; `targets` are those of OIT_TARGET.
     template <class... Targets>
     void draw(raster::Pass& pass, const Targets&... targets) {
-        const auto run = [&](const auto&... more) {
-            transparent_.draw(pass, targets..., constants_, materials_, geometry_.normals(),
-                              more...);
-        };
-        if (opacities_ && opaque_)
-            run(*opacities_, opaque_->depth_bits);
-        else if (opacities_)
-            run(*opacities_);
-        else if (opaque_)
-            run(opaque_->depth_bits);
-        else
-            run();
+        with(tints_, [&](const auto&... tints) {
+            with(opacities_, [&](const auto&... opacities) {
+                with(depth_bits(), [&](const auto&... depths) {
+                    transparent_.draw(pass, targets..., constants_, materials_, geometry_.normals(),
+                                      tints..., opacities..., depths...);
+                });
+            });
+        });
     }
 
     /// A kernel over the pixels: its last parameters are OIT_SCREEN (see screen.clh).
@@ -144,6 +140,15 @@ private:
         explicit Opaque(const FragmentSource& source);
     };
 
+    // Calls use() with a buffer, or without it where it is not there.
+    template <class Optional, class Use>
+    static void with(const Optional& buffer, const Use& use) {
+        if (buffer)
+            use(*buffer);
+        else
+            use();
+    }
+
     [[nodiscard]] raster::Sampling sampling() const;
     [[nodiscard]] std::string pass_text(std::string_view source) const;
     [[nodiscard]] cellist::Source screen_source(std::string_view source,
@@ -160,7 +165,9 @@ private:
     raster::Projection projection_;
     raster::Triangles transparent_;
     cellist::Buffer<Material> materials_;
-    std::optional<cellist::Buffer<cl_float>> opacities_;  ///< of vertices, as geometry_ has them
+    // Of vertices, as geometry_ has them.
+    std::optional<cellist::Buffer<cl_float>> opacities_;
+    std::optional<cellist::Buffer<cl_float>> tints_;  ///< 3 each
     std::unique_ptr<Opaque> opaque_;
     cellist::Range screen_;
     cellist::Buffer<cl_float4> image_;

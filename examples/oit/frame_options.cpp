@@ -112,6 +112,48 @@ void read_blend(const std::string& text, FrameOptions& options) {
     options.blend_function = {{std::istreambuf_iterator<char>(file), {}}, text};
 }
 
+std::optional<support::UpAxis> read_up(const std::string& text) {
+    if (text.empty()) return {};
+    if (text == "x") return support::UpAxis::x;
+    if (text == "y") return support::UpAxis::y;
+    if (text == "z") return support::UpAxis::z;
+    refuse("--up", text, "x, y or z");
+}
+
+std::vector<std::string> arguments_of(const FrameOptions& options) {
+    std::vector<std::string> arguments{options.scene};
+    arguments.insert(arguments.end(), options.more_meshes.begin(), options.more_meshes.end());
+    return arguments;
+}
+
+Scene scene_of_files(const FrameOptions& options) {
+    std::vector<MeshFile> files;
+    for (const std::string& argument : arguments_of(options)) files.push_back(mesh_file(argument));
+    std::vector<PlacedMesh> placed;
+    std::vector<support::Mesh*> meshes;
+    std::vector<SceneMesh> origins;
+    placed.reserve(files.size());
+    for (const MeshFile& file : files) {
+        placed.push_back({.mesh = support::load_mesh(file.path),
+                          .alpha = options.alpha,
+                          .own_alpha = file.alpha});
+        support::Mesh& mesh = placed.back().mesh;
+        support::turn_up(mesh, options.up.value_or(mesh.up));
+        meshes.push_back(&mesh);
+        origins.push_back({.file = file.path.string(),
+                           .alpha = file.alpha,
+                           .triangles = mesh.triangles.size(),
+                           .ignored_textures = mesh.ignored_textures,
+                           .ends_within_line = mesh.ends_within_line,
+                           .drops = mesh.drops,
+                           .notes = mesh.notes});
+    }
+    support::fit_to_unit_sphere(meshes);
+    Scene scene = scene_of(std::move(placed));
+    scene.meshes = std::move(origins);
+    return scene;
+}
+
 void set_blend(Scene& scene, Blend blend) {
     for (Material& material : scene.materials)
         if (material.blend != static_cast<cl_uint>(Blend::opaque))
@@ -163,7 +205,9 @@ double read_between(const std::string& option, const std::string& text, double l
 
 void check_outputs(const FrameOptions& options, std::span<const NamedFile> outputs) {
     std::vector<NamedFile> known;
-    if (find_scene(options.scene) == nullptr) known.push_back({"the mesh", options.scene});
+    if (find_scene(options.scene) == nullptr)
+        for (const std::string& argument : arguments_of(options))
+            known.push_back({"the mesh", mesh_file(argument).path});
     if (options.blend_function) known.push_back({"--blend", options.blend_function->file_name});
     for (const NamedFile& output : outputs) {
         const auto& [name, path] = output;
@@ -197,9 +241,10 @@ std::string help_on_tables() {
 }
 
 FrameArguments::FrameArguments(CLI::App& app, const FrameOptions& options)
-    : scene_(options.scene),
+    : scene_(options.scene.empty() ? std::vector<std::string>{} : arguments_of(options)),
       size_(std::to_string(options.width) + "x" + std::to_string(options.height)),
       alpha_(shortest(options.alpha)),
+      up_(),
       blend_(blend_text(options)),
       samples_(std::to_string(options.quality.samples)),
       resolve_(options.quality.resolve == Resolve::per_pixel ? "pixel" : "sample"),
@@ -214,10 +259,14 @@ FrameArguments::FrameArguments(CLI::App& app, const FrameOptions& options)
     const auto add = [&](const char* name, std::string& value, const char* what, const char* type) {
         add_option(app, name, value, what, type);
     };
-    add("scene", scene_, "mesh that Assimp reads (OBJ, PLY, STL, glTF, ...), or a scene",
-        "MESH|SCENE");
+    app.add_option("scene", scene_,
+                   "mesh files (OBJ, PLY, STL, glTF, ...), each with an opacity of its own if "
+                   "ALPHA is given; or a scene")
+        ->type_name("MESH[:ALPHA]...|SCENE");
     add("--size", size_, "image size in pixels", "WxH");
-    add("--alpha", alpha_, "opacity of the surfaces, 0 to 1", "A");
+    add("--alpha", alpha_, "opacity, 0 to 1, of surfaces whose file does not say one", "A");
+    add("--up", up_, "axis of the mesh files that points up: x, y or z; else what each file says",
+        "AXIS");
     add("--blend", blend_,
         "how surfaces blend: over, additive, multiplicative, absorb, or a file with a function",
         "KIND|FILE");
@@ -237,7 +286,23 @@ FrameArguments::FrameArguments(CLI::App& app, const FrameOptions& options)
 
 void FrameArguments::read(FrameOptions& options) const {
     if (scene_.empty()) throw InputError("no mesh or scene given (see --help)");
-    options.scene = scene_;
+    options.scene = scene_.front();
+    options.more_meshes.assign(scene_.begin() + 1, scene_.end());
+    options.up = read_up(up_);
+    for (const std::string& argument : scene_) {
+        const SceneInfo* scene = find_scene(argument.substr(0, argument.rfind(':')));
+        if (find_scene(argument) != nullptr && scene_.size() > 1)
+            throw InputError("the scene '" + argument +
+                             "' is drawn alone: leave out the other meshes and scenes");
+        std::error_code error;
+        if (scene != nullptr && scene->name != argument &&
+            !std::filesystem::exists(argument, error) &&
+            !std::filesystem::exists(std::string(scene->name), error))
+            throw InputError("'" + argument + "': the scene " + std::string(scene->name) +
+                             " takes its opacity from --alpha");
+    }
+    if (options.up && find_scene(options.scene) != nullptr)
+        throw InputError("--up turns mesh files, and '" + options.scene + "' is a scene");
     options.device = device_;
     options.opaque_floor = opaque_floor_;
     read_size(size_, options);
@@ -267,19 +332,42 @@ cellist::Device choose_device(const FrameOptions& options) {
     return device;
 }
 
+MeshFile mesh_file(const std::string& text) {
+    std::error_code error;
+    const auto exists = [&](const std::string& path) {
+        return std::filesystem::exists(path, error);
+    };
+    const std::size_t colon = text.rfind(':');
+    if (exists(text)) return {text, {}};
+    if (colon == std::string::npos || !exists(text.substr(0, colon)))
+        throw InputError("'" + text + "' is neither a file nor a scene; --help lists the scenes");
+    const auto alpha = parse<float>(std::string_view(text).substr(colon + 1));
+    if (!alpha || !(*alpha >= 0 && *alpha <= 1))
+        throw InputError("'" + text +
+                         "': expected an opacity from 0 to 1 after the colon, such as " +
+                         text.substr(0, colon) + ":0.3");
+    return {text.substr(0, colon), alpha};
+}
+
+std::string title_of(const FrameOptions& options) {
+    std::string title;
+    for (const std::string& argument : arguments_of(options))
+        title += (title.empty() ? "" : " + ") + std::filesystem::path(argument).filename().string();
+    return title;
+}
+
+void stand_on_floor(Scene& scene, const FrameOptions& options) {
+    if (!options.opaque_floor) return;
+    for (const raster::View& view : make_views(options))
+        if (view.eye[1] > scene.look.floor_height) {
+            add_floor(scene);
+            return;
+        }
+}
+
 Scene make_scene(const FrameOptions& options) {
-    Scene scene;
-    if (const SceneInfo* info = find_scene(options.scene)) {
-        scene = info->make(options.alpha);
-    } else {
-        std::error_code error;
-        if (!std::filesystem::exists(options.scene, error))
-            throw InputError("'" + options.scene +
-                             "' is neither a file nor a scene; --help lists the scenes");
-        support::Mesh mesh = support::load_mesh(options.scene);
-        support::fit_to_unit_sphere(mesh);
-        scene = scene_of(std::move(mesh), options.alpha);
-    }
+    const SceneInfo* info = find_scene(options.scene);
+    Scene scene = info != nullptr ? info->make(options.alpha) : scene_of_files(options);
     if (options.blend) set_blend(scene, *options.blend);
     return scene;
 }

@@ -12,6 +12,7 @@
 
 #include "camera.hpp"
 #include "frame.hpp"
+#include "mesh.hpp"
 
 namespace CLI {
 class App;
@@ -21,7 +22,8 @@ namespace oit {
 
 /// What is drawn, from where, and on which device: the options that all programs which draw have.
 struct FrameOptions {
-    std::string scene;  ///< a mesh file, or the name of a computed scene
+    std::string scene;  ///< the name of a computed scene, or a mesh file as MESH[:ALPHA]
+    std::vector<std::string> more_meshes = {};  ///< further mesh files of the picture, so as well
     int width = 1280;
     int height = 720;
     float alpha = 0.35F;
@@ -29,6 +31,7 @@ struct FrameOptions {
     std::optional<double> eye_separation = {};  ///< for two eyes
     double time = 0;                            ///< of the scene, in seconds
     bool opaque_floor = false;
+    std::optional<support::UpAxis> up = {};  ///< of mesh files; else what each file says, or y
     Quality quality = {};
     std::optional<Blend> blend = {};  ///< of all transparent surfaces; else the scene decides
     std::optional<BlendFunction> blend_function = {};
@@ -46,8 +49,9 @@ public:
     void read(FrameOptions& options) const;
 
 private:
-    std::string scene_, size_, alpha_, blend_, samples_, resolve_, depth_scale_, view_, eyes_,
-        time_, device_;
+    std::vector<std::string> scene_;
+    std::string size_, alpha_, up_, blend_, samples_, resolve_, depth_scale_, view_, eyes_, time_,
+        device_;
     bool depth_range_;
     bool opaque_floor_;
 };
@@ -77,9 +81,24 @@ void check_outputs(const FrameOptions& options, std::span<const NamedFile> outpu
 /// image of their size.
 [[nodiscard]] cellist::Device choose_device(const FrameOptions& options);
 
-/// The scene without a floor, from a file or computed. Throws InputError where there is neither a file nor a
-/// scene of this name, or the file holds no mesh.
+/// A mesh file of a command line: MESH[:ALPHA]. A file whose whole name is given wins over an
+/// opacity after its last colon.
+struct MeshFile {
+    std::filesystem::path path;
+    std::optional<float> alpha;
+};
+[[nodiscard]] MeshFile mesh_file(const std::string& text);
+
+/// What the options draw, for titles: file names without folders, or the scene's name.
+[[nodiscard]] std::string title_of(const FrameOptions& options);
+
+/// The scene without a floor, from files or computed. Throws InputError where there is neither a
+/// file nor a scene of this name, or a file holds no mesh.
 [[nodiscard]] Scene make_scene(const FrameOptions& options);
+
+/// Adds the floor that the options ask for, where it is seen from above: from below it would hide
+/// the scene.
+void stand_on_floor(Scene& scene, const FrameOptions& options);
 
 /// What the eyes see.
 [[nodiscard]] std::vector<raster::View> make_views(const FrameOptions& options);

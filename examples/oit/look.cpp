@@ -18,7 +18,8 @@ Look studio_look(float floor_height) {
         .floor_fade_begin = 1.2F,
         .floor_fade_end = 3.2F,
         .floor_shadow = 0.45F,
-        .floor_shadow_radius = 0.75F,
+        .floor_shadow_centre = {0, 0},
+        .floor_shadow_radius = {0.75F, 0.75F},
     };
 }
 

@@ -19,12 +19,13 @@ struct Look {
     cl_float floor_square;      ///< side of one square of the checkerboard
     cl_float floor_fade_begin;  ///< distance from the axis where the floor starts to fade out
     cl_float floor_fade_end;
-    cl_float floor_shadow;  ///< how dark the floor gets under the object, 0 to 1
-    cl_float floor_shadow_radius;
+    cl_float floor_shadow;            ///< how dark the floor gets under the object, 0 to 1
+    cl_float floor_shadow_centre[2];  ///< x and z
+    cl_float floor_shadow_radius[2];  ///< of an ellipse along x and z
 };
 CELLIST_STRUCT(Look, sky, ground, key, key_direction, rim, background_top, background_bottom,
                floor_light, floor_dark, floor_height, floor_square, floor_fade_begin,
-               floor_fade_end, floor_shadow, floor_shadow_radius);
+               floor_fade_end, floor_shadow, floor_shadow_centre, floor_shadow_radius);
 
 /// The look of the example's pictures, for an object inside of the unit sphere that stands on a
 /// floor at `floor_height`.

@@ -110,9 +110,8 @@ void draw_within_budget(oit::Report& report, oit::Keeper& keeper, oit::Frame& fr
 void describe(oit::Report& report, const oit::Scene& scene, const cellist::Device& device) {
     report.device = device.info().name;
     report.driver = device.info().driver;
-    if (scene.models.empty()) return;
-    report.drops = scene.models.front().mesh.drops;
-    report.mesh_ends_within_line = scene.models.front().mesh.ends_within_line;
+    report.meshes = scene.meshes;
+    for (const oit::SceneMesh& mesh : scene.meshes) report.drops += mesh.drops;
 }
 
 void write(oit::Report& report, const oit::Frame& frame, const oit::Renderer& renderer) {
@@ -141,7 +140,7 @@ int run(const oit::Options& options) {
     oit::Report report;
     report.options = options;
     report.triangles = scene.triangles();
-    if (options.opaque_floor) oit::add_floor(scene);
+    oit::stand_on_floor(scene, options);
     describe(report, scene, device);
     oit::Frame frame = oit::make_frame(scene, options);
     frame.memory_bytes = options.memory_bytes;

@@ -20,7 +20,8 @@ enum class Paint : cl_uint { shaded, floor };
 
 /// A surface. Colours are linear.
 struct Material {
-    /// The front's tint under Blend::absorb is the light that passes through a unit of length.
+    /// Under Blend::absorb, light passes through a unit of length to the part
+    /// 1 - alpha + alpha * front_tint.
     cl_float front_tint[3];
     cl_float back_tint[3];
     cl_float alpha;  ///< opacity, 0 to 1

@@ -77,6 +77,7 @@ Needs needs_of(const Frame& frame) {
     needs.least_depth = std::numeric_limits<float>::max();
     bool first = true;
     for (const Instance& instance : scene.instances) {
+        needs.tints = needs.tints || !scene.models.at(instance.model).tints.empty();
         if (scene.is_opaque(instance)) {
             needs.opaque = true;
             continue;
@@ -86,10 +87,8 @@ Needs needs_of(const Frame& frame) {
         needs.blends |= 1U << material.blend;
         needs.opacities = needs.opacities || !scene.models.at(instance.model).opacities.empty();
         needs.shines = needs.shines || (blend == Blend::absorb && material.gloss > 0);
-        // The surface of a medium adds its shine in full.
-        const float alpha = blend == Blend::absorb ? 1 : material.alpha;
-        needs.alpha_varies = needs.alpha_varies || (!first && alpha != needs.alpha);
-        needs.alpha = alpha;
+        needs.alpha_varies = needs.alpha_varies || (!first && material.alpha != needs.alpha);
+        needs.alpha = material.alpha;
         first = false;
         needs.colour_max = std::max(needs.colour_max, brightest(material, scene.look));
         for (const raster::View& view : frame.views)
@@ -128,6 +127,7 @@ std::string defines_of(const Frame& frame, const Needs& needs) {
     text += define("OIT_STATE_FLOATS", state_floats(quality, needs));
     if (needs.opaque) text += "#define OIT_HAS_OPAQUE\n";
     if (needs.opacities) text += "#define OIT_HAS_OPACITIES\n";
+    if (needs.tints) text += "#define OIT_HAS_TINTS\n";
     if (needs.has(Blend::absorb)) text += "#define OIT_ABSORBS\n";
     if (needs.has(Blend::absorb) || needs.has(Blend::user)) text += "#define OIT_NEEDS_DISTANCE\n";
     if (needs.has(Blend::user)) text += "#define OIT_USER_BLEND\n";

@@ -10,7 +10,8 @@ namespace oit {
 /// What a frame requires of the kernels; they are compiled for that and no more.
 struct Needs {
     bool opaque = false;        ///< something hides fragments
-    bool opacities = false;     ///< vertices have opacities
+    bool opacities = false;     ///< vertices of transparent surfaces have opacities
+    bool tints = false;         ///< vertices have tints
     bool alpha_varies = false;  ///< fragments differ in opacity
     float alpha = 1;            ///< their opacity, where they do not
     std::uint32_t blends = 0;   ///< a bit, 1 << Blend, for each kind of the transparent surfaces

@@ -1,8 +1,10 @@
 // Pass: the colour of each sample's opaque surface, from the piece that owns it.
 #define RASTER_TARGET                                                                              \
     global const uint *owners, global const uint *depth_bits, global float4 *colour,               \
-        const OitFrame kernel_frame, global const Material *materials, global const float *normals
-#define RASTER_TARGET_PASS owners, depth_bits, colour, kernel_frame, materials, normals
+        const OitFrame kernel_frame, global const Material *materials,                             \
+        global const float *normals OIT_TINTS
+#define RASTER_TARGET_PASS                                                                         \
+    owners, depth_bits, colour, kernel_frame, materials, normals OIT_TINTS_PASS
 
 static inline void raster_emit(RASTER_TARGET, const View* view,
                                global const RasterInstance* instance, uint piece,
@@ -21,9 +23,9 @@ static inline void raster_emit(RASTER_TARGET, const View* view,
         shaded = oit_shade_floor(&frame.look, view, sample->x, sample->y);
     } else {
         const float3 normal = oit_normal(instance, sample, normals);
-        shaded = oit_shade_surface(
-            &frame.look, oit_float3(sample->front ? material.front_tint : material.back_tint),
-            material.gloss, normal, sample->front, oit_ray(view, sample->x, sample->y));
+        shaded = oit_shade_surface(&frame.look, oit_tint(&material, sample OIT_TINTS_PASS),
+                                   material.gloss, normal, sample->front,
+                                   oit_ray(view, sample->x, sample->y));
     }
     for (int s = 0; s < OIT_SAMPLES; ++s)
         if (owned >> s & 1) colour[pixel * OIT_SAMPLES + s] = (float4)(shaded, 1.0f);

@@ -124,6 +124,19 @@ private:
                 glm::dot(to_double(placed.normal_z), normal)};
     }
 
+    // The tint of the side that is seen.
+    [[nodiscard]] dvec3 tint_of(const Instance& instance, std::size_t triangle,
+                                const ReferenceCover& cover) const {
+        const Material& material = frame_.scene.material_of(instance);
+        const Model& model = model_of(instance);
+        const dvec3 tint = to_double(cover.front ? material.front_tint : material.back_tint);
+        if (model.tints.empty()) return tint;
+        dvec3 factor(0);
+        for (std::size_t j = 0; j < 3; ++j)
+            factor += cover.weight[j] * dvec3(model.tints[model.mesh.triangles[triangle][j]]);
+        return tint * factor;
+    }
+
     void cover_opaque(std::size_t eye, const Instance& instance,
                       const raster::RasterInstance& placed, std::size_t triangle,
                       const ReferenceCover& cover) {
@@ -131,13 +144,12 @@ private:
         const ReferenceShading shading(frame_.scene.look, frame_.views[eye]);
         const std::size_t pixel = pixel_of(eye, cover.x, cover.y);
         const bool is_floor = material.paint == static_cast<cl_uint>(Paint::floor);
-        const dvec3 colour =
-            is_floor
-                ? shading.floor(cover.x, cover.y)
-                : shading.surface(to_double(cover.front ? material.front_tint : material.back_tint),
-                                  static_cast<double>(material.gloss),
-                                  normal_of(instance, placed, triangle, cover), cover.front,
-                                  cover.x, cover.y);
+        const dvec3 colour = is_floor
+                                 ? shading.floor(cover.x, cover.y)
+                                 : shading.surface(tint_of(instance, triangle, cover),
+                                                   static_cast<double>(material.gloss),
+                                                   normal_of(instance, placed, triangle, cover),
+                                                   cover.front, cover.x, cover.y);
         for (std::size_t s = 0; s < samples_; ++s) {
             if ((cover.coverage >> s & 1) == 0) continue;
             OpaqueSample& sample = opaque_[pixel * samples_ + s];
@@ -164,7 +176,7 @@ private:
         const ReferenceShading shading(frame_.scene.look, frame_.views[eye]);
         const auto blend = static_cast<Blend>(material.blend);
         const auto gloss = static_cast<double>(material.gloss);
-        dvec3 tint = to_double(cover.front ? material.front_tint : material.back_tint);
+        dvec3 tint = tint_of(instance, triangle, cover);
         ReferenceFragment fragment{cover.depth,
                                    tint,
                                    alpha_of(instance, triangle, cover),
@@ -174,10 +186,10 @@ private:
                                    cover.sample_depth};
         if (frame_.quality.depth_range) fragment.depth = mean_depth(fragment);
         if (blend == Blend::absorb) {
-            fragment.alpha = 1;
-            fragment.colour = to_double(material.front_tint);
+            fragment.colour = glm::mix(dvec3(1), to_double(material.front_tint),
+                                       static_cast<double>(material.alpha));
             add(pixel, fragment);
-            if (gloss == 0) return;
+            if (gloss == 0 || !cover.front) return;
             fragment.blend = Blend::additive;
             tint = dvec3(0);
         }
@@ -186,6 +198,14 @@ private:
                 shading.surface(tint, gloss, normal_of(instance, placed, triangle, cover),
                                 cover.front, cover.x, cover.y);
         add(pixel, fragment);
+    }
+
+    // At the mean of the samples that are visible: 1 / depth is linear in the image.
+    [[nodiscard]] double mean_depth(const ReferenceFragment& fragment) const {
+        double sum = 0;
+        for (std::size_t s = 0; s < samples_; ++s)
+            if ((fragment.coverage >> s & 1) != 0) sum += 1 / fragment.sample_depth[s];
+        return std::popcount(fragment.coverage) / sum;
     }
 
     [[nodiscard]] double alpha_of(const Instance& instance, std::size_t triangle,
@@ -198,14 +218,6 @@ private:
             opacity += cover.weight[j] *
                        static_cast<double>(model.opacities[model.mesh.triangles[triangle][j]]);
         return alpha * opacity;
-    }
-
-    // At the mean of the samples that are visible: 1 / depth is linear in the image.
-    [[nodiscard]] double mean_depth(const ReferenceFragment& fragment) const {
-        double sum = 0;
-        for (std::size_t s = 0; s < samples_; ++s)
-            if ((fragment.coverage >> s & 1) != 0) sum += 1 / fragment.sample_depth[s];
-        return std::popcount(fragment.coverage) / sum;
     }
 
     void add(std::size_t pixel, const ReferenceFragment& fragment) {
@@ -223,18 +235,6 @@ private:
             reference_.fragments[next[pixel]++] = fragment;
     }
 
-    void blend(std::size_t p) {
-        const auto width = static_cast<std::size_t>(frame_.width());
-        const auto height = static_cast<std::size_t>(frame_.height());
-        const std::size_t eye = p / (width * height);
-        const auto x = static_cast<int>(p % width), y = static_cast<int>(p / width % height);
-        const ReferenceShading shading(frame_.scene.look, frame_.views[eye]);
-
-        const std::span<ReferenceFragment> list(
-            reference_.fragments.begin() + static_cast<std::ptrdiff_t>(reference_.offsets[p]),
-            reference_.fragments.begin() + static_cast<std::ptrdiff_t>(reference_.offsets[p + 1]));
-        std::sort(list.begin(), list.end(),
-                  [](const ReferenceFragment& a, const ReferenceFragment& b) {
     // The fragments that cover a sample, nearest first.
     [[nodiscard]] std::vector<const ReferenceFragment*> order_in(
         std::size_t p, std::span<const ReferenceFragment> list, std::size_t s) {
@@ -263,6 +263,18 @@ private:
                layout_.depth_resolution(needs_).at(most) + half * steep;
     }
 
+    void blend(std::size_t p) {
+        const auto width = static_cast<std::size_t>(frame_.width());
+        const auto height = static_cast<std::size_t>(frame_.height());
+        const std::size_t eye = p / (width * height);
+        const auto x = static_cast<int>(p % width), y = static_cast<int>(p / width % height);
+        const ReferenceShading shading(frame_.scene.look, frame_.views[eye]);
+
+        const std::span<ReferenceFragment> list(
+            reference_.fragments.begin() + static_cast<std::ptrdiff_t>(reference_.offsets[p]),
+            reference_.fragments.begin() + static_cast<std::ptrdiff_t>(reference_.offsets[p + 1]));
+        std::sort(list.begin(), list.end(),
+                  [](const ReferenceFragment& a, const ReferenceFragment& b) {
                       return std::tie(a.depth, a.colour.x, a.colour.y, a.colour.z) <
                              std::tie(b.depth, b.colour.x, b.colour.y, b.colour.z);
                   });

@@ -70,9 +70,13 @@ dvec3 ReferenceShading::floor(int x, int y) const {
     };
     const double checker = 0.5 + 0.5 * mean(0) * mean(2);
     const double from_axis = std::hypot(hit.x, hit.z);
+    const auto shadow_part = [&](int i, double at) {
+        return (at - static_cast<double>(look_.floor_shadow_centre[i])) /
+               static_cast<double>(look_.floor_shadow_radius[i]);
+    };
     const double shadow =
         1 - static_cast<double>(look_.floor_shadow) *
-                smooth(1 - from_axis / static_cast<double>(look_.floor_shadow_radius));
+                smooth(1 - std::hypot(shadow_part(0, hit.x), shadow_part(1, hit.z)));
     const auto begin = static_cast<double>(look_.floor_fade_begin);
     const auto end = static_cast<double>(look_.floor_fade_end);
     const double fade = smooth((from_axis - begin) / (end - begin));

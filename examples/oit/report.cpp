@@ -76,6 +76,9 @@ void print_method(const Report& report, const Line& line) {
 
 void print_fragments(const Report& report, const Line& line) {
     line("triangles") << grouped(report.triangles) << support::dropped_text(report.drops) << '\n';
+    std::uint64_t textures = 0;
+    for (const SceneMesh& mesh : report.meshes) textures += mesh.ignored_textures;
+    if (textures > 0) line("ignored") << counted(textures, "texture") << '\n';
     if (!report.lengths) {
         // A choice says how many there are.
         if (!report.choice)
@@ -108,6 +111,18 @@ void print_times(const Report& report, const Line& line) {
                   << ")\n";
 }
 
+nlohmann::ordered_json meshes_json(const Report& report) {
+    auto meshes = nlohmann::ordered_json::array();
+    for (const SceneMesh& mesh : report.meshes) {
+        meshes.push_back({{"file", std::filesystem::path(mesh.file).filename().string()},
+                          {"alpha", nullptr},
+                          {"triangles", mesh.triangles},
+                          {"ignored_textures", mesh.ignored_textures}});
+        if (mesh.alpha) meshes.back()["alpha"] = *mesh.alpha;
+    }
+    return meshes;
+}
+
 nlohmann::ordered_json times_json(const Report& report) {
     const PassTimes& passes = report.passes;
     nlohmann::ordered_json json{{"transform", passes.transform_ms},
@@ -131,8 +146,8 @@ void print(const Report& report, std::ostream& out) {
         return out << "  " << std::left << std::setw(18) << name << std::right;
     };
     const Options& options = report.options;
-    out << "cellist-oit " << std::filesystem::path(options.scene).filename().string() << ", "
-        << options.width << 'x' << options.height << ", alpha " << options.alpha << ", "
+    out << "cellist-oit " << title_of(options) << ", " << options.width << 'x' << options.height
+        << ", alpha " << options.alpha << ", "
         << (options.quality.layers ? nearest_text(*options.quality.layers) : "all layers")
         << (options.opaque_floor ? ", opaque floor" : "") << '\n';
     line("device") << report.device << " (driver " << report.driver << ")\n";
@@ -148,8 +163,13 @@ void print(const Report& report, std::ostream& out) {
     if (report.pixels_nan > 0)
         line("NaN") << counted(report.pixels_nan, "pixel") << ", drawn black\n";
     if (report.comparison) print_comparison(report, line);
-    if (report.mesh_ends_within_line)
-        line("note") << "the mesh file ends within a line: it may have been cut off\n";
+    for (const SceneMesh& mesh : report.meshes) {
+        for (const std::string& note : mesh.notes) line("note") << note << '\n';
+        if (mesh.ends_within_line)
+            line("note") << "the mesh file "
+                         << (report.meshes.size() > 1 ? "'" + mesh.file + "' " : "")
+                         << "ends within a line: it may have been cut off\n";
+    }
     line("picture") << std::filesystem::absolute(options.out).lexically_normal().string() << '\n';
 }
 
@@ -158,7 +178,7 @@ void write_json(const Report& report, const std::filesystem::path& path) {
     nlohmann::ordered_json json;
     json["device"] = report.device;
     json["driver"] = report.driver;
-    json["scene"] = std::filesystem::path(options.scene).filename().string();
+    json["scene"] = title_of(options);
     json["method"] = method_text({&method_named(options.method), options.quality});
     json["width"] = options.width;
     json["height"] = options.height;
@@ -177,6 +197,7 @@ void write_json(const Report& report, const std::filesystem::path& path) {
                        {"unsplit_polygons", report.drops.unsplit_polygons},
                        {"points_and_lines", report.drops.points_and_lines},
                        {"bytes_after_end", report.drops.bytes_after_end}};
+    json["meshes"] = meshes_json(report);
     json["fragments"] = nullptr;
     if (report.lengths) {
         json["fragments"] = report.lengths->total;

@@ -20,8 +20,8 @@ struct Report {
     std::string device;
     std::string driver;
     std::uint64_t triangles = 0;
-    support::MeshDrops drops;
-    bool mesh_ends_within_line = false;
+    std::vector<SceneMesh> meshes;            ///< the files of the picture
+    support::MeshDrops drops;                 ///< of all of them
     std::optional<cellist::Lengths> lengths;  ///< of methods that keep all fragments
     std::optional<std::uint64_t> node_bytes;  ///< of a fragment, without links, where it has a node
     std::uint64_t method_bytes = 0;           ///< what the method keeps on the device

@@ -1,10 +1,15 @@
 #include "scene.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
+#include <glm/common.hpp>
 #include <glm/ext/matrix_transform.hpp>
+
+#include "mesh_materials.hpp"
 
 namespace oit {
 namespace {
@@ -21,14 +26,48 @@ support::Mesh floor_mesh(const Look& look) {
     return floor;
 }
 
-float floor_height_under(const support::Mesh& mesh) {
+struct Box {
+    glm::dvec3 low{std::numeric_limits<double>::infinity()};
+    glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+
+    void add(const glm::dvec3& point) {
+        low = glm::min(low, point);
+        high = glm::max(high, point);
+    }
+    [[nodiscard]] bool is_empty() const { return !(low.x <= high.x); }
+};
+
+// Around all instances, as they stand at time 0.
+Box box_around(const Scene& scene) {
+    Box box;
+    for (const Instance& instance : scene.instances)
+        for (const glm::vec3& p : scene.models.at(instance.model).mesh.positions)
+            if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z))
+                box.add(instance.place * glm::dvec4(p, 1));
+    return box;
+}
+
+float floor_height_under(const Scene& scene) {
     // A flat underside that lay in the floor would fight with it for the same depth.
     constexpr float sunk = 0.02F;
-    if (mesh.positions.empty()) return -1;
-    const auto lower = [](const glm::vec3& a, const glm::vec3& b) { return a.y < b.y; };
-    const auto [lowest, highest] =
-        std::minmax_element(mesh.positions.begin(), mesh.positions.end(), lower);
-    return lowest->y + sunk * (highest->y - lowest->y);
+    const Box box = box_around(scene);
+    if (box.is_empty()) return -1;
+    const auto lowest = static_cast<float>(box.low.y), highest = static_cast<float>(box.high.y);
+    return lowest + sunk * (highest - lowest);
+}
+
+// An ellipse around what stands on the floor, and somewhat larger.
+void fit_shadow(Look& look, const Box& box) {
+    constexpr double wider = 1.25, least = 0.05;
+    if (box.is_empty()) return;
+    const auto fit = [&](int shadow_axis, int axis) {
+        look.floor_shadow_centre[shadow_axis] =
+            static_cast<cl_float>((box.low[axis] + box.high[axis]) / 2);
+        look.floor_shadow_radius[shadow_axis] =
+            static_cast<cl_float>(std::max(least, wider * (box.high[axis] - box.low[axis]) / 2));
+    };
+    fit(0, 0);
+    fit(1, 2);
 }
 
 }  // namespace
@@ -56,6 +95,7 @@ Material glass(float alpha) {
 }
 
 void add_floor(Scene& scene) {
+    fit_shadow(scene.look, box_around(scene));
     scene.instances.push_back({.model = scene.models.size(), .material = scene.materials.size()});
     scene.models.push_back({.mesh = floor_mesh(scene.look)});
     Material material = glass(1);
@@ -64,13 +104,18 @@ void add_floor(Scene& scene) {
     scene.materials.push_back(material);
 }
 
-Scene scene_of(support::Mesh mesh, float alpha) {
+Scene scene_of(std::vector<PlacedMesh> meshes) {
     Scene scene;
-    scene.look = studio_look(floor_height_under(mesh));
-    scene.models.push_back({.mesh = std::move(mesh)});
-    scene.materials.push_back(glass(alpha));
-    scene.instances.push_back({});
+    for (PlacedMesh& placed : meshes)
+        add_mesh(scene, std::move(placed.mesh), placed.alpha, placed.own_alpha);
+    scene.look = studio_look(floor_height_under(scene));
     return scene;
+}
+
+Scene scene_of(support::Mesh mesh, float alpha) {
+    std::vector<PlacedMesh> meshes;
+    meshes.push_back({.mesh = std::move(mesh), .alpha = alpha});
+    return scene_of(std::move(meshes));
 }
 
 }  // namespace oit

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <unordered_map>
 
@@ -142,6 +143,17 @@ std::string dropped_text(const MeshDrops& drops) {
     return text.empty() ? "" : " (dropped: " + text + ")";
 }
 
+MeshDrops& MeshDrops::operator+=(const MeshDrops& other) {
+    nonfinite_vertices += other.nonfinite_vertices;
+    nonfinite_triangles += other.nonfinite_triangles;
+    out_of_range_triangles += other.out_of_range_triangles;
+    degenerate_triangles += other.degenerate_triangles;
+    unsplit_polygons += other.unsplit_polygons;
+    points_and_lines += other.points_and_lines;
+    bytes_after_end += other.bytes_after_end;
+    return *this;
+}
+
 Mesh clean_mesh(const Mesh& source) {
     Mesh mesh;
     mesh.drops = source.drops;
@@ -179,30 +191,48 @@ Mesh clean_mesh(const Mesh& source) {
 }
 
 void fit_to_unit_sphere(Mesh& mesh) {
-    if (mesh.positions.empty()) return;
+    Mesh* const meshes[] = {&mesh};
+    fit_to_unit_sphere(meshes);
+}
+
+void fit_to_unit_sphere(std::span<Mesh* const> meshes) {
+    const auto for_each_position = [&](const auto& use) {
+        for (Mesh* mesh : meshes)
+            for (glm::vec3& p : mesh->positions) use(p);
+    };
     // Steps towards the farthest vertex, each shorter than the one before (Badoiu and Clarkson
     // 2003).
-    glm::dvec3 low(mesh.positions.front()), high = low;
-    for (const glm::vec3& p : mesh.positions) {
+    glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
+    for_each_position([&](const glm::vec3& p) {
         low = glm::min(low, glm::dvec3(p));
         high = glm::max(high, glm::dvec3(p));
-    }
+    });
+    if (!(low.x <= high.x)) return;
     glm::dvec3 centre = 0.5 * (low + high);
     double radius = 0;
     for (int step = 1; step <= 64; ++step) {
         glm::dvec3 farthest = centre;
         radius = 0;
-        for (const glm::vec3& p : mesh.positions) {
+        for_each_position([&](const glm::vec3& p) {
             const double distance = glm::length(glm::dvec3(p) - centre);
             if (distance > radius) {
                 radius = distance;
                 farthest = p;
             }
-        }
+        });
         if (step < 64) centre += (farthest - centre) / (step + 1.0);
     }
     const double scale = radius > 0 ? 1 / radius : 1;
-    for (glm::vec3& p : mesh.positions) p = glm::vec3((glm::dvec3(p) - centre) * scale);
+    for_each_position([&](glm::vec3& p) { p = glm::vec3((glm::dvec3(p) - centre) * scale); });
+}
+
+void turn_up(Mesh& mesh, UpAxis axis) {
+    const auto turn = [&](const auto& turned) {
+        for (std::vector<glm::vec3>* vectors : {&mesh.positions, &mesh.normals})
+            for (glm::vec3& v : *vectors) v = turned(v);
+    };
+    if (axis == UpAxis::x) turn([](const glm::vec3& v) { return glm::vec3(-v.y, v.x, v.z); });
+    if (axis == UpAxis::z) turn([](const glm::vec3& v) { return glm::vec3(v.x, v.z, -v.y); });
 }
 
 }  // namespace support

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct MeshDrops {
         return nonfinite_triangles + out_of_range_triangles + degenerate_triangles +
                unsplit_polygons;
     }
+    MeshDrops& operator+=(const MeshDrops& other);
 };
 
 /// " (dropped: 3 degenerate, 1 points or lines)"; empty where nothing was.
@@ -78,5 +80,12 @@ struct Mesh {
 /// Moves the mesh to the origin and scales it so that its smallest enclosing sphere (to within a
 /// few percent) has radius 1. Coordinates up to the largest float are safe.
 void fit_to_unit_sphere(Mesh& mesh);
+
+/// The same for several meshes in common coordinates: one move and one scale for all.
+void fit_to_unit_sphere(std::span<Mesh* const> meshes);
+
+/// Turns the mesh so that the axis points along y. Handedness stays. UpAxis::unknown and y do
+/// nothing.
+void turn_up(Mesh& mesh, UpAxis axis);
 
 }  // namespace support

@@ -19,7 +19,7 @@ std::regex regex_of(const std::string& text) try {
 
 oit::Scene scene_of(const oit::FrameOptions& options) {
     oit::Scene scene = oit::make_scene(options);
-    if (options.opaque_floor) oit::add_floor(scene);
+    oit::stand_on_floor(scene, options);
     return scene;
 }
 

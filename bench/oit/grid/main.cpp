@@ -52,7 +52,7 @@ oit::GridResult run_view(const cellist::Device& device, const oit::GridView& vie
     drawn.width = options.width;
     drawn.height = options.height;
     oit::Scene scene = oit::make_scene(drawn);
-    if (drawn.opaque_floor) oit::add_floor(scene);
+    oit::stand_on_floor(scene, drawn);
     const oit::Frame frame = oit::make_frame(scene, drawn);
     oit::Search search(device, frame, options.frames);
     oit::GridResult result{.view = &view,

@@ -37,11 +37,11 @@ void run(const oit::TradeoffOptions& options) {
                      .driver = device.info().driver,
                      .triangles = scene.triangles(),
                      .frames = options.frames};
-    if (options.opaque_floor) oit::add_floor(scene);
+    oit::stand_on_floor(scene, options);
     const oit::Frame frame = oit::make_frame(scene, options);
     const oit::Reference reference = reference_of(frame);
     if (reference.fragments.empty())
-        throw support::InputError("nothing transparent is in view of '" + options.scene +
+        throw support::InputError("nothing transparent is in view of '" + oit::title_of(options) +
                                   "', so there is nothing to compare");
     sweep.fragments = reference.fragments.size();
     sweep.most_layers = reference.most_layers();

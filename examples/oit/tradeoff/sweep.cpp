@@ -47,7 +47,7 @@ const Measurement* all_layers(const Sweep& sweep) {
 }  // namespace
 
 std::string Sweep::scene_name() const {
-    return std::filesystem::path(options.scene).filename().string();
+    return title_of(options);
 }
 
 std::vector<Setting> settings_of(const Frame& frame, std::uint64_t most_layers,
