@@ -1,6 +1,7 @@
 #include "profile.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -143,26 +144,45 @@ std::optional<Profile> load_profile(const DeviceInfo& device) {
     }
 }
 
-fs::path make_profile_directory(const DeviceInfo& device) {
+namespace {
+
+/// A new file beside the profile's. Under another name first: a reader sees the old profile or the new
+/// one.
+fs::path write_unfinished(const fs::path& path, const std::string& text) {
+    fs::path unfinished = path;
+    unfinished += "." + std::to_string(std::random_device{}());
+    errno = 0;
+    std::ofstream file(unfinished, std::ios::binary);
+    file << text;
+    file.close();
+    if (file.good()) return unfinished;
+    const std::error_code error(errno != 0 ? errno : EIO, std::generic_category());
+    std::error_code ignored;
+    fs::remove(unfinished, ignored);
+    throw Error("cannot write " + path.string() + ": " + error.message());
+}
+
+}  // namespace
+
+fs::path prepare_profile(const DeviceInfo& device) {
     fs::path path = profile_path(device);
     std::error_code error;
     fs::create_directories(path.parent_path(), error);
     if (error)
         throw Error("cannot make the directory " + path.parent_path().string() + ": " +
                     error.message());
+    const fs::file_status status = fs::status(path, error);
+    if (fs::exists(status) && !fs::is_regular_file(status))
+        throw Error("cannot write " + path.string() + ": it is not a file");
+    fs::remove(write_unfinished(path, std::string(size_max, ' ')), error);
     return path;
 }
 
 void save_profile(const DeviceInfo& device, const Profile& profile) {
-    const fs::path path = make_profile_directory(device);
-    // Under another name first: a reader sees the old file or the new one.
-    fs::path unfinished = path;
-    unfinished += "." + std::to_string(std::random_device{}());
-    std::error_code error = std::make_error_code(std::errc::io_error);
-    std::ofstream file(unfinished, std::ios::binary);
-    file << profile_text(device, profile);
-    file.close();
-    if (file.good()) fs::rename(unfinished, path, error);
+    const fs::path path = prepare_profile(device);
+    const fs::path unfinished = write_unfinished(path, profile_text(device, profile));
+    std::error_code error;
+    fs::rename(unfinished, path, error);
     if (!error) return;
     std::error_code ignored;
     fs::remove(unfinished, ignored);

@@ -55,8 +55,8 @@ private:
 /// The file of a device and its driver in the user's cache directory: cellist/ in $XDG_CACHE_HOME, or
 /// in $HOME/.cache. Throws Error if neither is set to an absolute path.
 [[nodiscard]] std::filesystem::path profile_path(const DeviceInfo& device);
-/// The same, and makes the directory. Throws Error.
-std::filesystem::path make_profile_directory(const DeviceInfo& device);
+/// The same. Makes the directory, and throws Error where no file can be written there.
+std::filesystem::path prepare_profile(const DeviceInfo& device);
 /// The profile in the device's file. None if there is no such file, or nothing of use in it.
 [[nodiscard]] std::optional<Profile> load_profile(const DeviceInfo& device);
 /// Writes the device's file, the whole of it or nothing. Throws Error.

@@ -23,7 +23,8 @@ struct Result {
 /// Runs `cellist` with the arguments, after assignments of environment variables.
 Result run(const std::string& variables, const std::string& arguments) {
     Result result;
-    const std::string line = "env " + variables + " '" CELLIST_COMMAND "' " + arguments + " 2>&1";
+    const std::string line =
+        "{ env " + variables + " '" CELLIST_COMMAND "' " + arguments + "; } 2>&1";
     FILE* pipe = popen(line.c_str(), "r");
     REQUIRE(pipe != nullptr);
     std::array<char, 1024> part{};
@@ -79,6 +80,39 @@ TEST_CASE("tune refuses before it measures") {
         REQUIRE(contains(result.output, message));
         REQUIRE_FALSE(contains(result.output, "written to"));
     }
+}
+
+TEST_CASE("tune refuses before it measures where the profile cannot be written") {
+    const fs::path cache =
+        fs::temp_directory_path() / ("cellist-test-" + std::to_string(std::random_device{}()));
+    // A folder has the profile's name.
+    const DeviceInfo info = Device::choose().info();
+    setenv("XDG_CACHE_HOME", cache.c_str(), 1);
+    const fs::path path = detail::profile_path(info);
+    fs::create_directories(path);
+    const Result result = run("XDG_CACHE_HOME=" + cache.string(), "tune");
+    INFO(result.output);
+    REQUIRE(result.status == 1);
+    REQUIRE(result.output == "cellist: cannot write " + path.string() + ": it is not a file\n");
+    // And nothing else is left there.
+    REQUIRE(std::distance(fs::directory_iterator(path.parent_path()), fs::directory_iterator()) ==
+            1);
+    fs::remove_all(cache);
+}
+
+TEST_CASE("a full disk behind the standard output ends every command with one line and status 1") {
+    if (!fs::exists("/dev/full")) return;
+    const fs::path cache =
+        fs::temp_directory_path() / ("cellist-test-" + std::to_string(std::random_device{}()));
+    for (const char* command : {"devices", "selftest", "tune", "--help", "--version"}) {
+        const Result result =
+            run("XDG_CACHE_HOME=" + cache.string(), std::string(command) + " >/dev/full");
+        INFO(command << ": " << result.output);
+        REQUIRE(result.status == 1);
+        REQUIRE(result.output ==
+                "cellist: cannot write to standard output: No space left on device\n");
+    }
+    fs::remove_all(cache);
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
 // The `cellist` command: what the OpenCL devices of this machine are, whether cellist works on them,
 // and what its storages cost there.
 
-#include <cstring>
+#include <cerrno>
 #include <iostream>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <cellist/cellist.hpp>
@@ -64,10 +65,22 @@ int run(const std::vector<std::string>& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    try {
-        return run({argv + 1, argv + argc});
-    } catch (const std::exception& error) {
-        std::cerr << "cellist: " << error.what() << '\n';
+    const auto fail = [](const std::string& why) {
+        std::cout.exceptions(std::ios::goodbit);  // the error stream flushes this one first
+        std::cerr << "cellist: " << why << '\n';
         return 1;
+    };
+    try {
+        // The first write that fails ends the command: on a full disk, or in a closed pipe.
+        std::cout.exceptions(std::ios::badbit | std::ios::failbit);
+        const int status = run({argv + 1, argv + argc});
+        std::cout.flush();
+        return status;
+    } catch (const std::ios::failure&) {
+        // The exception does not know the reason; the last call of the system does.
+        const std::error_code reason(errno, std::generic_category());
+        return fail("cannot write to standard output: " + reason.message());
+    } catch (const std::exception& error) {
+        return fail(error.what());
     }
 }

@@ -98,7 +98,7 @@ int tune(const Device& device, std::ostream& out) {
     const DeviceInfo& info = device.info();
     const std::uint64_t records = record_count(info);
     // What would make the work useless comes before it.
-    const std::string path = detail::make_profile_directory(info).string();
+    const std::string path = detail::prepare_profile(info).string();
     out << info.name << " (" << info.platform << ", driver " << info.driver << ")\n"
         << records << " records of " << sizeof(TuneRecord) << " bytes in " << records / occupancy
         << " lists; nanoseconds a record\n"
