@@ -1,11 +1,14 @@
 #include <algorithm>
+#include <atomic>
 #include <cctype>
 #include <charconv>
 #include <cstdlib>
+#include <random>
 
 #include <cellist/device.hpp>
 
 #include "device_state.hpp"
+#include "program_text.hpp"
 
 namespace cellist {
 
@@ -146,18 +149,20 @@ Device Device::choose(std::string_view selector) {
     });
 }
 
-Device::Device(const cl::Device& device) : state_(std::make_shared<detail::DeviceState>()) {
+Device::Device(const cl::Device& device)
+    : state_("a Device", std::make_shared<detail::DeviceState>()) {
     detail::opencl([&] {
         state_->context = cl::Context(device);
         state_->queue = cl::CommandQueue(state_->context, device);
         state_->staging = std::make_shared<detail::Staging>(state_->context, state_->queue);
         state_->device = cl::Device(device);
         state_->info = describe(device);
+        state_->max_constant_bytes = device.getInfo<CL_DEVICE_MAX_CONSTANT_BUFFER_SIZE>();
     });
 }
 
 Device::Device(cl::Context context, cl::CommandQueue queue)
-    : state_(std::make_shared<detail::DeviceState>()) {
+    : state_("a Device", std::make_shared<detail::DeviceState>()) {
     detail::opencl([&] {
         if (queue_info<cl_context>(queue, CL_QUEUE_CONTEXT) != context())
             throw Error("the command queue belongs to another context");
@@ -166,6 +171,7 @@ Device::Device(cl::Context context, cl::CommandQueue queue)
              CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0;
         state_->device = cl::Device(queue_info<cl_device_id>(queue, CL_QUEUE_DEVICE), true);
         state_->info = describe(state_->device);
+        state_->max_constant_bytes = state_->device.getInfo<CL_DEVICE_MAX_CONSTANT_BUFFER_SIZE>();
         state_->context = std::move(context);
         state_->queue = std::move(queue);
         state_->staging = std::make_shared<detail::Staging>(state_->context, state_->queue);
@@ -219,18 +225,30 @@ const std::optional<Profile>& DeviceState::profile() {
     return profile_;
 }
 
-const cl::Program& DeviceState::program(const std::string& source, const std::string& options) {
+cl::Program DeviceState::program(const std::string& source, const std::string& options) {
+    if (includes_files(source, options)) {
+        // Drivers keep programs as well, and some do not look at the files: no text is given twice.
+        static std::atomic<std::uint64_t> count = std::random_device{}();
+        return build_program(source + "\n// " + std::to_string(++count) + "\n", options);
+    }
     const std::lock_guard lock(mutex_);
     const std::string key = options + '\0' + source;
-    if (const auto known = programs_.find(key); known != programs_.end()) return known->second;
-    return opencl([&]() -> const cl::Program& {
+    return opencl([&] {
+        if (const cl::Program* known = programs_.find(key)) return *known;
+        return programs_.add(key, build_program(source, options));
+    });
+}
+
+cl::Program DeviceState::build_program(const std::string& source,
+                                       const std::string& options) const {
+    return opencl([&] {
         cl::Program program(context, source);
         // Not by the bindings, which ask for the log of every build, and where that fails, throw that.
         const cl_int code =
             clBuildProgram(program(), 1, &device(), options.c_str(), nullptr, nullptr);
         if (code != CL_SUCCESS)
             throw OpenClError("clBuildProgram", code, build_log(program, device));
-        return programs_.emplace(key, std::move(program)).first->second;
+        return program;
     });
 }
 

@@ -6,12 +6,12 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <unordered_map>
 
 #include <cellist/device.hpp>
 #include <cellist/error.hpp>
 
 #include "profile.hpp"
+#include "recent.hpp"
 #include "staging.hpp"
 
 namespace cellist::detail {
@@ -22,7 +22,8 @@ struct DeviceState {
     cl::CommandQueue queue;
     cl::Device device;
     DeviceInfo info;
-    bool out_of_order = false;  ///< the queue
+    bool out_of_order = false;             ///< the queue
+    std::uint64_t max_constant_bytes = 0;  ///< of a buffer in constant memory
     std::shared_ptr<Staging> staging;
 
     /// The queue, for one command that starts after all that were enqueued before.
@@ -30,18 +31,25 @@ struct DeviceState {
     /// Completes when all that was enqueued has.
     [[nodiscard]] cl::Event marker() const;
 
-    /// The program with this source and these options; builds it the first time. It stays where it is.
-    /// Throws OpenClError with the compiler's log. Any thread may call it.
-    const cl::Program& program(const std::string& source, const std::string& options);
+    /// The program with this source and these options. Builds it unless it is among the last ones; always,
+    /// where the source or the options include other files, which may have changed. Throws OpenClError
+    /// with the compiler's log. Any thread may call it.
+    cl::Program program(const std::string& source, const std::string& options);
 
     /// What `cellist tune` has stored of the device. Read the first time; any thread may call it.
     const std::optional<Profile>& profile();
 
+    /// Programs that are kept. One takes about 1 MB of the host under PoCL.
+    static constexpr std::size_t programs_max = 128;
+
 private:
+    [[nodiscard]] cl::Program build_program(const std::string& source,
+                                            const std::string& options) const;
+
     std::mutex mutex_;
     std::once_flag profile_once_;
     std::optional<Profile> profile_;
-    std::unordered_map<std::string, cl::Program> programs_;  ///< by options and source
+    Recent<std::string, cl::Program> programs_{programs_max};  ///< by options and source
 };
 
 /// Whether a device had no memory for what was asked of it.
@@ -54,6 +62,9 @@ inline bool out_of_memory(const OpenClError& error) {
 inline void check(const char* call, cl_int code) {
     if (code != CL_SUCCESS) throw OpenClError(call, code);
 }
+
+/// A count of 64 bits that kernels keep in two words.
+inline std::uint64_t wide(cl_uint low, cl_uint high) { return (std::uint64_t{high} << 32) | low; }
 
 /// Places for the threads of a device that has some (threads.clh): twice as many, so that a table of them is
 /// never crowded; a power of two.

@@ -44,7 +44,60 @@ std::string_view take_library_include(std::string_view& text) {
     return name;
 }
 
+/// The source without line continuations, of which one may stand anywhere in a directive.
+std::string spliced(std::string_view text) {
+    std::string out;
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        const std::string_view rest = text.substr(at);
+        const std::size_t escape = rest.starts_with('\\') ? 1
+                                   : rest.starts_with(
+                                         "?"
+                                         "?/")
+                                       ? 3
+                                       : 0;
+        if (escape != 0) {
+            // Compilers allow for blanks before the end of the line.
+            const std::size_t end = rest.find_first_not_of(" \t\v\f", escape);
+            if (end != std::string_view::npos && (rest[end] == '\n' || rest[end] == '\r')) {
+                at += end;
+                if (rest.substr(end).starts_with("\r\n")) ++at;
+                continue;
+            }
+        }
+        out += text[at];
+    }
+    return out;
+}
+
+/// Skips blanks and comments within a directive.
+void skip_space(std::string_view& text) {
+    for (;;) {
+        text.remove_prefix(std::min(text.find_first_not_of(" \t\v\f"), text.size()));
+        if (!text.starts_with("/*")) return;
+        text.remove_prefix(std::min(text.find("*/", 2), text.size() - 2) + 2);
+    }
+}
+
 }  // namespace
+
+bool includes_files(std::string_view source, std::string_view options) {
+    for (const std::string_view option : {"-include", "-imacros"})
+        if (options.find(option) != std::string_view::npos) return true;
+    const std::string text = spliced(source);
+    for (std::size_t at = text.find_first_of("#%?"); at != std::string::npos;
+         at = text.find_first_of("#%?", at + 1)) {
+        std::string_view rest = std::string_view(text).substr(at);
+        if (!take(rest, "#") && !take(rest, "%:") &&
+            !take(rest,
+                  "?"
+                  "?="))
+            continue;
+        skip_space(rest);
+        for (const std::string_view directive : {"include", "import", "embed"})
+            if (rest.starts_with(directive)) return true;
+    }
+    return false;
+}
 
 void ProgramText::add(std::string_view part, const std::string& file_name) {
     parts_.push_back({lines_ + 1, file_name});

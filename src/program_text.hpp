@@ -51,6 +51,10 @@ private:
 /// compiler.
 [[nodiscard]] std::vector<std::string> defined_macros(std::string_view options);
 
+/// Whether a program may take the text of other files: by a directive in its source, wherever that stands,
+/// or by one of its options. True for some sources that only look so, such as in a comment.
+[[nodiscard]] bool includes_files(std::string_view source, std::string_view options);
+
 /// The letters, digits and underscores behind the first `prefix` that has any; empty if none has.
 [[nodiscard]] std::string name_behind(std::string_view prefix, std::string_view text);
 

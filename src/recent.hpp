@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <list>
+#include <map>
+#include <utility>
+
+namespace cellist::detail {
+
+/// A map of the values that were used last. One more than `most` takes the place of the one that was not
+/// used for the longest time. A value stays where it is as long as it is in the map.
+template <class Key, class Value>
+class Recent {
+public:
+    explicit Recent(std::size_t most) : most_(most) {}
+
+    /// Null if there is none.
+    [[nodiscard]] Value* find(const Key& key) {
+        const auto known = places_.find(key);
+        if (known == places_.end()) return nullptr;
+        values_.splice(values_.begin(), values_, known->second);
+        return &values_.front().second;
+    }
+    /// A key that is not in the map.
+    Value& add(const Key& key, Value value) {
+        values_.emplace_front(key, std::move(value));
+        try {
+            places_.emplace(key, values_.begin());
+        } catch (...) {
+            values_.pop_front();
+            throw;
+        }
+        if (values_.size() > most_) {
+            places_.erase(values_.back().first);
+            values_.pop_back();
+        }
+        return values_.front().second;
+    }
+    [[nodiscard]] std::size_t size() const { return values_.size(); }
+
+private:
+    using Values = std::list<std::pair<Key, Value>>;
+
+    std::size_t most_;
+    Values values_;  ///< the last used first
+    std::map<Key, typename Values::iterator> places_;
+};
+
+}  // namespace cellist::detail
