@@ -22,7 +22,9 @@ kernel void cellist_set_thresholds(CELLIST_LISTS(CELLIST_RECORD, lists)) {
     lists_heads[at] = wanted - less;
 }
 
-// After a choosing pass: whether the words that were ranked decide.
+// After a choosing pass: whether the words that were ranked decide, and whether the cell has the records
+// that the ranking passes found: those before the thresholds, and as many of their equals as are wanted.
+// Where the thresholds are no record's, but the end of all words, there may be fewer.
 kernel void cellist_check_choice(CELLIST_LISTS(CELLIST_RECORD, lists),
                                  volatile global cellist_choice* choice) {
     const cellist_view lists_view = cellist_view_of(lists);
@@ -33,4 +35,14 @@ kernel void cellist_check_choice(CELLIST_LISTS(CELLIST_RECORD, lists),
     if (cell == 0)
         choice->words = cellist_rank_length((struct CELLIST_RECORD*)0, lists_view.rank_member);
     if (equals > wanted) atomic_inc(&choice->undecided);
+
+    int at_the_end = 1;
+    for (uint i = 0; i < lists_view.rank_words; ++i)
+        if (lists_heads[cellist_row(lists_view, CELLIST_ROW_LEAST + lists_view.slots + i, cell)] !=
+            0xFFFFFFFFu)
+            at_the_end = 0;
+    const uint kept = lists_heads[cell];
+    const uint before = lists_view.slots - wanted;
+    if (kept != before + min(equals, wanted) || (equals < wanted && !at_the_end))
+        atomic_inc(&choice->unrepeated);
 }

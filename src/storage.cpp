@@ -15,8 +15,6 @@ static_assert(sizeof(cellist_hand) == sizeof(cellist_shard));
 
 namespace {
 
-std::uint64_t wide(cl_uint low, cl_uint high) { return (std::uint64_t{high} << 32) | low; }
-
 /// Four blocks a shard at least: more shards in a small pool only make the search for the last free
 /// nodes longer.
 cl_uint shard_bits_for(std::uint64_t capacity_nodes, Allocation allocation) {
@@ -44,7 +42,8 @@ std::string mebibytes(std::uint64_t bytes) {
 
 ListStorage::ListStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
                          const Shape& shape, const ListsOptions& options, cl_uint mode,
-                         std::size_t node_bytes, std::uint64_t head_words)
+                         std::size_t node_bytes, std::uint64_t head_words_a_cell,
+                         std::uint64_t more_head_words)
     : device_(std::move(device)),
       definitions_(definitions),
       shape_(shape),
@@ -52,12 +51,22 @@ ListStorage::ListStorage(std::shared_ptr<DeviceState> device, const Definitions&
       mode_(mode),
       node_bytes_(node_bytes),
       slice_{0, shape.cells()} {
-    const std::uint64_t head_bytes = head_words * sizeof(cl_uint);
     const std::uint64_t allocation = device_->info.max_allocation_bytes;
-    if (head_bytes > allocation)
+    const std::uint64_t cell_bytes = head_words_a_cell * sizeof(cl_uint);
+    const std::uint64_t more_bytes = more_head_words * sizeof(cl_uint);
+    if (cell_bytes > allocation)
+        throw Error(std::to_string(cell_bytes) +
+                    " bytes of heads for each cell exceed this device's "
+                    "limit of " +
+                    mebibytes(allocation) + " per allocation: lower slots");
+    const std::uint64_t most_cells =
+        more_bytes > allocation ? 0 : (allocation - more_bytes) / cell_bytes;
+    if (shape.cells() > most_cells)
         throw Error("a shape of " + shape.to_string() + " cells exceeds this device's limit of " +
-                    std::to_string(allocation / (head_bytes / shape.cells())) + " cells (" +
-                    mebibytes(allocation) + " per allocation)");
+                    std::to_string(most_cells) + " cells (" + mebibytes(allocation) +
+                    " per allocation, " + std::to_string(cell_bytes) + " bytes a cell)");
+    const std::uint64_t head_words = head_words_a_cell * shape.cells() + more_head_words;
+    const std::uint64_t head_bytes = head_words * sizeof(cl_uint);
     if (head_bytes > options.budget_bytes)
         throw Error("the heads of a shape of " + shape.to_string() + " cells take " +
                     mebibytes(head_bytes) + ", over the budget of " +
@@ -86,9 +95,9 @@ void ListStorage::add_to(Arguments& arguments) const { add_to(arguments, nodes_,
 
 void ListStorage::add_to(Arguments& arguments, const Memory& nodes, const Memory& heads,
                          const cellist_view& view) const {
-    arguments.add_nodes(nodes.cl(), record().name);
-    arguments.add(heads.cl());
-    arguments.add(shards_.cl());
+    arguments.add_nodes(nodes, record().name);
+    arguments.add(heads);
+    arguments.add(shards_);
     arguments.append(Arguments::Kind::value, &view, sizeof view);
     arguments.add_mode(view.mode);
 }
@@ -189,6 +198,14 @@ void ListStorage::allocate_pool(std::uint64_t capacity_nodes) {
 Reading ListStorage::read_counters(Shards& shards) const {
     shards.resize(shards_.size_bytes() / sizeof(cellist_shard));
     return shards_.read_later(shards.data(), shards.size() * sizeof(cellist_shard));
+}
+
+Reading ListStorage::read_late(std::array<cl_uint, 2>& words) const {
+    static_assert(offsetof(cellist_shard, late_high) ==
+                  offsetof(cellist_shard, late_low) + sizeof(cl_uint));
+    // Behind the last shard, see cellist_refuse.
+    const std::uint64_t from = (std::uint64_t{1} << shard_bits_) * sizeof(cellist_shard);
+    return shards_.read_later(words.data(), sizeof words, from + offsetof(cellist_shard, late_low));
 }
 
 ListStorage::Counters ListStorage::sum(const Shards& shards, cl_uint hands) {

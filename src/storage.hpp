@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -77,6 +78,10 @@ public:
     /// Makes room for such lists in the slice, if the policy is to grow. Throws OverflowError.
     virtual void reserve(std::uint64_t total, std::uint64_t longest) = 0;
 
+    /// Enqueues the reading of the inserts since the last clear() that were refused for there was no
+    /// build: low and high word.
+    [[nodiscard]] Reading read_late(std::array<cl_uint, 2>& words) const;
+
     /// Adds what CELLIST_LISTS declares.
     virtual void add_to(Arguments& arguments) const;
 
@@ -124,7 +129,8 @@ protected:
 
     ListStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
                 const Shape& shape, const ListsOptions& options, cl_uint mode,
-                std::size_t node_bytes, std::uint64_t head_words);
+                std::size_t node_bytes, std::uint64_t head_words_a_cell,
+                std::uint64_t more_head_words = 0);
 
     virtual void start_anew() {}
     virtual void prepare_pass() { clear(); }

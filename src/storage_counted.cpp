@@ -8,7 +8,7 @@ namespace cellist::detail {
 CountedStorage::CountedStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
                                const Shape& shape, const ListsOptions& options)
     : ListStorage(std::move(device), definitions, shape, options, CELLIST_CONTIGUOUS,
-                  definitions.records.back().size, 2 * shape.cells() + 1),
+                  definitions.records.back().size, 2, 1),
       scan_(device_, shape.cells(), counts_at()) {
     const std::uint64_t capacity = options.capacity_nodes.value_or(0);
     if (const auto reason = refusal(capacity)) throw Error(*reason);
@@ -108,7 +108,7 @@ void CountedStorage::move_from_partitions() {
                            partitions_->starts().cl());
     Arguments arguments;
     ListStorage::add_to(arguments);
-    arguments.add_nodes(partitions_->nodes().cl(), record().name);
+    arguments.add_nodes(partitions_->nodes(), record().name);
     arguments.add(partitions_->heads().cl());
     arguments.add(plan.hands);
     arguments.add(plan.bits);

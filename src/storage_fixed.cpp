@@ -8,7 +8,7 @@ namespace cellist::detail {
 FixedStorage::FixedStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
                            const Shape& shape, const ListsOptions& options)
     : ListStorage(std::move(device), definitions, shape, options, CELLIST_FIXED,
-                  definitions.records.back().size, shape.cells()),
+                  definitions.records.back().size, 1),
       scan_(device_, shape.cells(), 0) {
     std::uint64_t slots = options.slots.value_or(4);
     if (!options.slots && refusal(nodes_with(slots))) slots = 0;

@@ -17,7 +17,7 @@ constexpr std::uint64_t hands_part = 16;
 LinkedStorage::LinkedStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
                              const Shape& shape, const ListsOptions& options)
     : ListStorage(std::move(device), definitions, shape, options, CELLIST_LINKED,
-                  node_layout(definitions.records.back()).size, shape.cells()) {
+                  node_layout(definitions.records.back()).size, 1) {
     std::uint64_t capacity =
         options.capacity_nodes.value_or(std::max(shape.cells(), default_capacity_nodes));
     if (!options.capacity_nodes && refusal(capacity)) capacity = 0;

@@ -25,7 +25,7 @@ NearestStorage::NearestStorage(std::shared_ptr<DeviceState> device, const Defini
     : ListStorage(std::move(device), definitions, shape, options, CELLIST_FIXED,
                   definitions.records.back().size,
                   // One row of thresholds: more come with the ties.
-                  (std::uint64_t{CELLIST_ROW_LEAST} + *options.slots + 1) * shape.cells()),
+                  std::uint64_t{CELLIST_ROW_LEAST} + *options.slots + 1),
       scan_(device_, shape.cells(), 0),
       choice_memory_(device_, 1, sizeof choice_, "choice") {
     rank_member_ = member_index(record(), options.nearest_by);
@@ -90,6 +90,7 @@ void NearestStorage::run(std::optional<Kernel>& step, const char* name, const Me
 
 bool NearestStorage::finish_pass() {
     if (!ranked_) {
+        reading_ = read_counters(ranking_);
         mode_ = CELLIST_CHOOSING;
         run(set_thresholds_, "cellist_set_thresholds");
         ++rank_words_;
@@ -109,15 +110,28 @@ bool NearestStorage::finish_pass() {
 }
 
 bool NearestStorage::review_pass(BuildReport& report) {
-    update(report, sum(counters_, 0), kept_.sum);
+    const Counters chosen = sum(counters_, 0);
+    update(report, chosen, kept_.sum);
     expected_->counts_hash = kept_.hash;
+    const Counters ranked = sum(ranking_, 0);
+    const std::uint64_t ranked_records = ranked.dropped + ranked.rejected;
+    if (choice_.unrepeated > 0 || ranked.rejected != chosen.rejected ||
+        ranked_records != report.attempted)
+        throw UnrepeatableError(
+            "the kernel inserted " + std::to_string(report.attempted) +
+            " records when it filled the slots, and " + std::to_string(ranked_records) +
+            " or others when it ranked them: it must insert the same records every time, or use "
+            "another policy than Overflow::keep_nearest");
     // Records that are equal in every word are the same: any of them will do.
     if (choice_.undecided == 0 || rank_words_ >= choice_.words) return true;
     ranked_ = false;
     return false;
 }
 
-void NearestStorage::make_whole(bool) { mode_ = CELLIST_FIXED; }
+void NearestStorage::make_whole(bool) {
+    mode_ = CELLIST_FIXED;
+    ranked_ = false;
+}
 
 std::uint64_t NearestStorage::nodes_for(std::uint64_t, std::uint64_t, std::uint64_t cells) const {
     return slots_ * cells;

@@ -128,6 +128,7 @@ private:
 
     CellScan scan_;
     bool ranked_ = false;  ///< the next pass fills the slots
+    Shards ranking_;       ///< counters of the last ranking pass
     CellScan::Totals kept_;
     cellist_choice choice_{};
     Memory choice_memory_;

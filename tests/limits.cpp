@@ -29,6 +29,22 @@ TEST_CASE("a shape over the device's limit is refused, naming the shape and the 
     REQUIRE(contains(error.what(), std::to_string(limit)));
 }
 
+TEST_CASE("slots whose heads no device has room for are refused, and no limit is of 0 cells") {
+    for (const std::uint32_t slots : {0x40000000u, 0xFFFFFFFFu})
+        for (const Shape& shape : {Shape{1}, Shape{5}, Shape{0x7FFFFFFF}}) {
+            const auto error = error_of([&] {
+                Lists<Item>(device(), shape,
+                            {.storage = Storage::fixed,
+                             .overflow = Overflow::keep_nearest,
+                             .slots = slots,
+                             .nearest_by = "key"});
+            });
+            INFO(error.what());
+            REQUIRE_FALSE(contains(error.what(), "limit of 0 "));
+            REQUIRE((contains(error.what(), "lower slots") || contains(error.what(), "cells (")));
+        }
+}
+
 TEST_CASE("dimensions that a shape does not have are of one cell") {
     const Shape shape{5, 0};
     REQUIRE(shape.extent(1) == 0);

@@ -101,7 +101,7 @@ typedef struct cellist_shard {
     CELLIST_UINT rejected_low;  // inserts into cells outside the shape, 64 bits in two words
     CELLIST_UINT rejected_high;
     CELLIST_UINT pool_full;  // behind the last shard: not 0 once every shard was seen full
-    CELLIST_UINT late_low;   // inserts outside of a build, 64 bits in two words
+    CELLIST_UINT late_low;   // behind the last shard: inserts outside of a build, in two words
     CELLIST_UINT late_high;
     CELLIST_UINT open_reservations;  // that hold nodes which no link has taken
     CELLIST_UINT missing_low;        // nodes that reservations lack, 64 bits in two words
@@ -132,8 +132,9 @@ typedef struct cellist_cursor {
 
 // What a choice among the records of each cell finds, from 0.
 typedef struct cellist_choice {
-    CELLIST_UINT undecided;  // cells with more records at the thresholds than slots for them
-    CELLIST_UINT words;      // of a record's key
+    CELLIST_UINT undecided;   // cells with more records at the thresholds than slots for them
+    CELLIST_UINT words;       // of a record's key
+    CELLIST_UINT unrepeated;  // cells with other records than those that were ranked
 } cellist_choice;
 
 // What a validation finds, from 0; each of its kernels says which of these it counts.
