@@ -10,9 +10,14 @@
 
 namespace cellist::detail {
 
+void throw_no_host_memory(std::uint64_t count, std::size_t element_bytes) {
+    throw Error("the host has no memory for a result of " + std::to_string(count) +
+                " elements of " + std::to_string(element_bytes) + " bytes");
+}
+
 Memory::Memory(std::shared_ptr<DeviceState> state, std::uint64_t count, std::size_t element_bytes,
                const char* what)
-    : state_(std::move(state)) {
+    : state_("a Buffer", std::move(state)) {
     const std::uint64_t limit = state_->info.max_allocation_bytes;
     if (count > limit / element_bytes)
         throw Error(std::string(what) + " of " + std::to_string(count) + " elements of " +
@@ -48,13 +53,13 @@ cl::Event Memory::write_later(const void* source, std::size_t bytes) {
     });
 }
 
-Reading Memory::read_later(void* target, std::size_t bytes) const {
+Reading Memory::read_later(void* target, std::size_t bytes, std::uint64_t from_byte) const {
     if (bytes == 0) return {.event = state_->marker()};
     Reading reading{.target = target, .bytes = bytes};
     if (bytes <= Staging::block_bytes) reading.staged = state_->staging->block();
     void* const to = reading.staged ? reading.staged.get() : target;
     opencl([&] {
-        state_->ordered_queue().enqueueReadBuffer(buffer_, CL_FALSE, 0, bytes, to, nullptr,
+        state_->ordered_queue().enqueueReadBuffer(buffer_, CL_FALSE, from_byte, bytes, to, nullptr,
                                                   &reading.event);
     });
     return reading;

@@ -152,6 +152,31 @@ TEST_CASE("lists may go before their build is finished") {
     require_complete(Inserter(other).build(other, inserts), 4096);
 }
 
+TEST_CASE("results that are on their way outlive lists, buffers and the device") {
+    CELLIST_EACH_STORAGE(storage);
+    CELLIST_RANDOM(random, 248u);
+    const Inserts<Item> inserts = random_inserts(4096, 50, random);
+    std::optional<Device> own(Device::choose());
+    std::optional<Lists<Item>> lists(std::in_place, *own, Shape{50},
+                                     ListsOptions{.storage = storage});
+    std::optional<Buffer<cl_uint>> buffer(std::in_place, *own, inserts.cells);
+    Inserter(*lists, *own).build(*lists, inserts);
+    Pending<HostLists<Item>> download = lists->download_async();
+    Pending<Lengths> lengths = lists->lengths_async();
+    Pending<Validation> validation = lists->validate_async();
+    Pending<std::vector<cl_uint>> cells = buffer->download_async();
+    lists.reset();
+    buffer.reset();
+    own.reset();
+    require_same(download.get(), oracle_of(inserts, 50));
+    REQUIRE(lengths.get().total == 4096);
+    REQUIRE(validation.get().ok());
+    REQUIRE(cells.get() == inserts.cells);
+    // Once: there is nothing left for the second time.
+    REQUIRE_THROWS_AS(download.get(), Error);
+    REQUIRE_THROWS_AS(Pending<Lengths>().get(), Error);
+}
+
 TEST_CASE("results that are on their way are those of the blocking calls") {
     CELLIST_EACH_STORAGE(storage);
     CELLIST_RANDOM(random, 245u);

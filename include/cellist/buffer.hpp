@@ -16,7 +16,7 @@
 namespace cellist {
 
 /// `size()` elements of T in device memory. T has the layout that the kernels expect. Movable, not
-/// copyable.
+/// copyable; every use of a buffer that was moved from throws Error.
 template <class T>
 class Buffer {
     static_assert(std::is_trivially_copyable_v<T>, "a Buffer holds trivially copyable elements");
@@ -33,13 +33,13 @@ public:
     Buffer(const Device& device, const std::vector<T>& elements)
         : Buffer(device, std::span<const T>(elements)) {}
 
-    [[nodiscard]] std::size_t size() const { return size_; }
-    [[nodiscard]] const cl::Buffer& cl() const { return memory_.cl(); }
+    [[nodiscard]] std::size_t size() const { return memory().size_bytes() / sizeof(T); }
+    [[nodiscard]] const cl::Buffer& cl() const { return memory().cl(); }
 
     /// A copy of the elements, after everything that was enqueued before. Blocks.
     [[nodiscard]] std::vector<T> download() const {
-        std::vector<T> elements(size_);
-        memory_.read(elements.data(), size_ * sizeof(T));
+        std::vector<T> elements = detail::host_memory<T>(size());
+        memory_.read(elements.data(), elements.size() * sizeof(T));
         return elements;
     }
 
@@ -50,8 +50,8 @@ public:
             detail::Arrival done;
         };
         const auto state = std::make_shared<State>();
-        state->elements.resize(size_);
-        state->done = memory_.read_later(state->elements.data(), size_ * sizeof(T));
+        state->elements = detail::host_memory<T>(size());
+        state->done = memory_.read_later(state->elements.data(), size() * sizeof(T));
         return {state->done.event(), [state] {
                     state->done.wait();
                     return std::move(state->elements);
@@ -61,22 +61,26 @@ public:
     /// Copies `elements` to the first of the buffer. They must stay until the event has completed.
     /// Throws Error if they are more than size(). Does not block.
     cl::Event upload_async(std::span<const T> elements) {
-        if (elements.size() > size_)
-            throw Error("a buffer of " + std::to_string(size_) + " elements has no room for " +
+        if (elements.size() > size())
+            throw Error("a buffer of " + std::to_string(size()) + " elements has no room for " +
                         std::to_string(elements.size()));
         return memory_.write_later(elements.data(), elements.size_bytes());
     }
 
     /// Sets every element to `value`. Blocks only where sizeof(T) is no power of two up to 128.
-    void fill(const T& value) { memory_.fill(&value, sizeof(T), size_ * sizeof(T)); }
+    void fill(const T& value) { memory_.fill(&value, sizeof(T), size() * sizeof(T)); }
 
     /// @private
     Buffer(const std::shared_ptr<detail::DeviceState>& device, std::size_t size)
-        : memory_(device, size, sizeof(T)), size_(size) {}
+        : memory_(device, size, sizeof(T)) {}
+    /// @private
+    [[nodiscard]] const detail::Memory& memory() const {
+        (void)memory_.device();  // throws if it was moved from
+        return memory_;
+    }
 
 private:
     detail::Memory memory_;
-    std::size_t size_;
 };
 
 }  // namespace cellist

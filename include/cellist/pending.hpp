@@ -8,7 +8,8 @@
 
 namespace cellist {
 
-/// A result of type T that the device is working on. Movable, not copyable.
+/// A result of type T that the device is working on. It does not depend on the object that it was asked
+/// of: a Lists or Buffer object may go before get(). Movable, not copyable.
 template <class T>
 class Pending {
 public:

@@ -4,9 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <new>
+#include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include <cellist/detail/arrival.hpp>
+#include <cellist/detail/owned.hpp>
 #include <cellist/opencl.hpp>
 
 namespace cellist::detail {
@@ -34,6 +38,18 @@ private:
         std::make_shared<std::atomic<std::uint64_t>>(0);
 };
 
+[[noreturn]] void throw_no_host_memory(std::uint64_t count, std::size_t element_bytes);
+
+/// Elements for a result in host memory. Throws Error where there is no room for them.
+template <class T>
+[[nodiscard]] std::vector<T> host_memory(std::uint64_t count) {
+    try {
+        return std::vector<T>(count);
+    } catch (const std::bad_alloc&) {
+    } catch (const std::length_error&) {}
+    throw_no_host_memory(count, sizeof(T));
+}
+
 /// A buffer on a device with checked sizes and one way to fail. Never empty for OpenCL: 0 elements
 /// take one byte.
 class Memory {
@@ -57,6 +73,8 @@ public:
     ~Memory() = default;
 
     [[nodiscard]] const cl::Buffer& cl() const { return buffer_; }
+    /// Throws Error where there is none: of memory that was moved from.
+    [[nodiscard]] const std::shared_ptr<DeviceState>& device() const { return state_.pointer(); }
     [[nodiscard]] std::uint64_t size_bytes() const { return size_bytes_; }
 
     /// Copies from the host. Blocks.
@@ -66,7 +84,8 @@ public:
     /// The same without blocking. `source` stays until the event has completed, `target` until the
     /// reading has arrived.
     cl::Event write_later(const void* source, std::size_t bytes);
-    [[nodiscard]] Reading read_later(void* target, std::size_t bytes) const;
+    [[nodiscard]] Reading read_later(void* target, std::size_t bytes,
+                                     std::uint64_t from_byte = 0) const;
     /// Repeats a pattern over the first `bytes`. Blocks only where the pattern's size is no power of
     /// two up to 128.
     void fill(const void* pattern, std::size_t pattern_bytes, std::size_t bytes);
@@ -97,7 +116,7 @@ private:
         std::uint64_t bytes_ = 0;
     };
 
-    std::shared_ptr<DeviceState> state_;
+    Owned<std::shared_ptr<DeviceState>> state_{"a Buffer"};
     cl::Buffer buffer_;
     std::uint64_t size_bytes_ = 0;
     Share share_;
