@@ -3,11 +3,15 @@
 #include <cstring>
 #include <map>
 #include <numeric>
+#include <span>
 
 #include <cellist/kernel.hpp>
 
+#include "build.hpp"
 #include "cellist_kernels.hpp"
 #include "device_state.hpp"
+#include "other_queues.hpp"
+#include "parameter.hpp"
 #include "program_text.hpp"
 #include "view.hpp"
 
@@ -16,19 +20,9 @@ namespace cellist {
 namespace {
 
 using detail::Arguments;
-using detail::check;
 using detail::opencl;
+using detail::Parameter;
 using detail::ProgramText;
-
-/// What a kernel expects as one parameter.
-struct Parameter {
-    std::string declaration;    ///< e.g. "uint count"
-    std::string type;           ///< of the value or of what a pointer points to, e.g. "uint"
-    std::string comparable;     ///< what of the type must be the same in an argument
-    bool is_container = false;  ///< the nodes of a container; `type` is their record
-    Arguments::Kind kind = Arguments::Kind::value;
-    std::size_t size = 0;  ///< in bytes; 0 if not known
-};
 
 /// The part of a program that defines the adapted structs.
 constexpr auto structs = "cellist/structs";
@@ -112,8 +106,8 @@ std::string macro_hint(const std::string& options, const detail::Definitions& de
     return hint;
 }
 
-const cl::Program& build(detail::DeviceState& device, const Source& source,
-                         const detail::Definitions& definitions, cl_uint modes) {
+cl::Program build(detail::DeviceState& device, const Source& source,
+                  const detail::Definitions& definitions, cl_uint modes) {
     if (source.text.empty()) throw Error("the source of " + source.file_name + " is empty");
     if (definitions.needs_fp64 && !device.info.fp64)
         throw Error("a struct has members of type double, which " + device.info.name +
@@ -132,93 +126,6 @@ const cl::Program& build(detail::DeviceState& device, const Source& source,
                           (complaint.empty() ? detail::with_hints(log, known) : complaint + log) +
                               macro_hint(source.options, definitions, log));
     }
-}
-
-/// Bytes of a parameter passed by value; 0 if the type is not known.
-std::size_t type_size(std::string name, const detail::Definitions& definitions) {
-    if (name.find("cellist_view_") != std::string::npos) return sizeof(cellist_view);
-    for (const detail::RecordType& record : definitions.records)
-        if (record.name == name || "struct " + record.name == name) return record.size;
-    if (name.starts_with("unsigned ")) name.replace(0, 9, "u");
-    static const std::map<std::string, std::size_t> scalars{
-        {"char", 1}, {"uchar", 1}, {"short", 2}, {"ushort", 2}, {"half", 2},  {"int", 4},
-        {"uint", 4}, {"float", 4}, {"long", 8},  {"ulong", 8},  {"double", 8}};
-    static const std::map<std::string, std::size_t> components{{"", 1},  {"2", 2}, {"3", 4},
-                                                               {"4", 4}, {"8", 8}, {"16", 16}};
-    const std::size_t digits = std::min(name.find_first_of("0123456789"), name.size());
-    const auto scalar = scalars.find(name.substr(0, digits));
-    const auto count = components.find(name.substr(digits));
-    if (scalar == scalars.end() || count == components.end()) return 0;
-    return scalar->second * count->second;
-}
-
-std::string text_of(const cl::Kernel& kernel, cl_uint index, cl_kernel_arg_info what) {
-    std::size_t size = 0;
-    check("clGetKernelArgInfo", clGetKernelArgInfo(kernel(), index, what, 0, nullptr, &size));
-    std::string text(size, '\0');
-    check("clGetKernelArgInfo",
-          clGetKernelArgInfo(kernel(), index, what, size, text.data(), nullptr));
-    return text.substr(0, text.find('\0'));
-}
-
-/// "float4" for "float4*", "Hit" for "struct Hit*".
-std::string pointed_to(std::string type) {
-    type.resize(std::min(type.size(), type.find_first_of("*")));
-    type.erase(type.find_last_not_of(' ') + 1);
-    return type.starts_with("struct ") ? type.substr(7) : type;
-}
-
-/// What must be the same in an argument and a parameter: float or integer with the size of the scalar,
-/// or the name of a struct. Vectors count as their scalars, and signs do not count. Empty for other
-/// types, which are not compared.
-std::string comparable(const std::string& type, const detail::Definitions& definitions) {
-    if (type.empty()) return {};
-    for (const detail::RecordType& record : definitions.records)
-        if (record.name == type) return type;
-    const std::string scalar = type.substr(0, type.find_first_of("0123456789"));
-    const std::size_t size = type_size(scalar, definitions);
-    if (size == 0) return {};
-    const bool is_float = scalar == "float" || scalar == "double" || scalar == "half";
-    return (is_float ? "float" : "integer") + std::to_string(8 * size);
-}
-
-std::vector<Parameter> parameters_of(const cl::Kernel& kernel,
-                                     const detail::Definitions& definitions) {
-    std::vector<Parameter> parameters(kernel.getInfo<CL_KERNEL_NUM_ARGS>());
-    for (cl_uint i = 0; i < parameters.size(); ++i) {
-        const std::string type = text_of(kernel, i, CL_KERNEL_ARG_TYPE_NAME);
-        const auto address = kernel.getArgInfo<CL_KERNEL_ARG_ADDRESS_QUALIFIER>(i);
-        Parameter& parameter = parameters[i];
-        parameter.declaration = type + " " + text_of(kernel, i, CL_KERNEL_ARG_NAME);
-        parameter.type = pointed_to(type);
-        constexpr std::string_view nodes = "cellist_node_";
-        parameter.is_container = parameter.type.starts_with(nodes);
-        if (parameter.is_container) parameter.type.erase(0, nodes.size());
-        parameter.comparable = comparable(parameter.type, definitions);
-        if (type == "sampler_t")
-            parameter.kind = Arguments::Kind::sampler;
-        else if (address == CL_KERNEL_ARG_ADDRESS_LOCAL)
-            parameter.kind = Arguments::Kind::local;
-        else if (address != CL_KERNEL_ARG_ADDRESS_PRIVATE || type.starts_with("image"))
-            parameter.kind = Arguments::Kind::memory;
-        else
-            parameter.size = type_size(type, definitions);
-    }
-    return parameters;
-}
-
-const char* kind_name(Arguments::Kind kind) {
-    switch (kind) {
-        case Arguments::Kind::value:
-            return "a value";
-        case Arguments::Kind::memory:
-            return "a buffer or image";
-        case Arguments::Kind::sampler:
-            return "a sampler";
-        case Arguments::Kind::local:
-            return "local memory";
-    }
-    return "";
 }
 
 cl::NDRange nd_range(const std::array<std::size_t, 3>& extents, std::size_t dimensions) {
@@ -264,58 +171,26 @@ std::size_t written(const auto& list) {
     return list.size() - 3 * static_cast<std::size_t>(containers);
 }
 
-/// Null where there is no memory.
-cl_context context_of(const std::byte* memory_handle) {
-    cl_mem memory = nullptr;
-    std::memcpy(&memory, memory_handle, sizeof(cl_mem));
-    if (memory == nullptr) return nullptr;
-    cl_context context = nullptr;
-    check("clGetMemObjectInfo",
-          clGetMemObjectInfo(memory, CL_MEM_CONTEXT, sizeof(cl_context), &context, nullptr));
-    return context;
-}
-
 /// The kernel, compiled for containers of some modes.
 struct Variant {
     cl::Kernel kernel;
     std::vector<Parameter> parameters;
     std::size_t work_group_limit = 0;
+    std::size_t own_local_bytes = 0;                   ///< of local memory without parameters
     std::array<std::size_t, 3> required_work_group{};  ///< 0 if the kernel requires none
-
-    /// Throws Error if an argument does not fit the parameter. Drivers do not all check this: PoCL
-    /// takes a value of any size, and none knows what a buffer holds.
-    void check(const detail::DeviceState& device, const detail::Definitions& definitions,
-               const std::string& name, cl_uint index, const Arguments::Argument& argument,
-               const std::byte* data) const {
-        const Parameter& parameter = parameters[index];
-        const auto fail = [&](const std::string& takes, const std::string& given) {
-            throw Error("kernel " + name + ", parameter " + std::to_string(index) + " '" +
-                        parameter.declaration + "': takes " + takes + ", was given " + given);
-        };
-        if (argument.kind != parameter.kind)
-            fail(kind_name(parameter.kind), kind_name(argument.kind));
-        if (parameter.size != 0 && argument.size != parameter.size)
-            fail(std::to_string(parameter.size) + " bytes", std::to_string(argument.size));
-        if (argument.is_container != parameter.is_container ||
-            (argument.is_container && argument.type != parameter.type))
-            fail(parameter.is_container ? "lists of " + parameter.type : "a buffer",
-                 argument.is_container ? "lists of " + argument.type : "a buffer");
-        // Most types are written as the parameter's, which is soon told.
-        if (!parameter.comparable.empty() && argument.type != parameter.type) {
-            const std::string given = comparable(argument.type, definitions);
-            if (!given.empty() && given != parameter.comparable)
-                fail(parameter.type,
-                     argument.type + (argument.kind == Arguments::Kind::memory
-                                          ? " (pass Buffer::cl() to reinterpret its elements)"
-                                          : ""));
-        }
-        if (argument.kind != Arguments::Kind::memory) return;
-        const cl_context context = context_of(data);
-        if (context == nullptr) fail("memory", "an empty buffer");
-        if (context != device.context())
-            fail("memory of " + device.info.name, "memory of another context");
-    }
 };
+
+/// Throws Error if the kernel takes more local memory than there is.
+void check_local_memory(const detail::DeviceState& device, const std::string& name,
+                        const Variant& variant, std::span<const Arguments::Argument> list) {
+    std::uint64_t bytes = variant.own_local_bytes;
+    for (const Arguments::Argument& argument : list)
+        if (argument.kind == Arguments::Kind::local) bytes += argument.size;
+    if (bytes > device.info.local_memory_bytes)
+        throw Error("kernel " + name + " takes " + std::to_string(bytes) +
+                    " bytes of local memory together, " + device.info.name + " has " +
+                    std::to_string(device.info.local_memory_bytes));
+}
 
 }  // namespace
 
@@ -326,16 +201,50 @@ struct Kernel::Impl {
     detail::Definitions definitions;
     std::map<cl_uint, Variant> variants;  ///< by modes
 
+    /// Sets the arguments, after a look at all of them.
+    void set(Variant& variant, const Arguments& arguments) const {
+        const auto list = arguments.list();
+        if (list.size() != variant.parameters.size())
+            throw Error("kernel " + name + " takes " + std::to_string(written(variant.parameters)) +
+                        " arguments and was given " + std::to_string(written(list)) +
+                        " (a container counts as one; build(kernel, ...) passes it first)");
+        const detail::ArgumentCheck check(*device, definitions, name);
+        for (cl_uint i = 0; i < list.size(); ++i)
+            check(i, variant.parameters[i], list[i], arguments.data(list[i]));
+        check_local_memory(*device, name, variant, list);
+        opencl([&] {
+            for (cl_uint i = 0; i < list.size(); ++i)
+                variant.kernel.setArg(i, list[i].size, arguments.data(list[i]));
+        });
+    }
+
+    void launch(Variant& variant, const Range& range, cl::Event* event) const {
+        opencl([&] {
+            const cl::CommandQueue& queue = device->ordered_queue();
+            const auto& extents = range.global;
+            if (std::find(extents.begin(), extents.end(), 0u) != extents.end()) {
+                if (event != nullptr) queue.enqueueMarkerWithWaitList(nullptr, event);
+            } else {
+                queue.enqueueNDRangeKernel(
+                    variant.kernel, cl::NullRange, nd_range(range.global, range.dimensions),
+                    work_group(range, variant.required_work_group, variant.work_group_limit),
+                    nullptr, event);
+            }
+        });
+    }
+
     /// The kernel for containers of these modes; builds it the first time.
     Variant& variant(cl_uint modes) {
         if (const auto known = variants.find(modes); known != variants.end()) return known->second;
-        const cl::Program& program = build(*device, source, definitions, modes);
+        const cl::Program program = build(*device, source, definitions, modes);
         return opencl([&]() -> Variant& {
             Variant made;
             made.kernel = kernel_called(program, name, source);
             made.parameters = parameters_of(made.kernel, definitions);
             made.work_group_limit =
                 made.kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device->device);
+            made.own_local_bytes =
+                made.kernel.getWorkGroupInfo<CL_KERNEL_LOCAL_MEM_SIZE>(device->device);
             made.required_work_group =
                 made.kernel.getWorkGroupInfo<CL_KERNEL_COMPILE_WORK_GROUP_SIZE>(device->device);
             return variants.emplace(modes, std::move(made)).first->second;
@@ -345,7 +254,8 @@ struct Kernel::Impl {
 
 Kernel::Kernel(std::shared_ptr<detail::DeviceState> device, const Source& source,
                const std::string& name, const detail::Definitions& definitions)
-    : impl_(new Impl{std::move(device), source, name, definitions, {}}) {
+    : impl_("a Kernel",
+            std::unique_ptr<Impl>(new Impl{std::move(device), source, name, definitions, {}})) {
     impl_->variant(definitions.modes);
 }
 
@@ -358,30 +268,18 @@ const std::string& Kernel::name() const { return impl_->name; }
 void Kernel::enqueue(const Range& range, const Arguments& arguments, cl::Event* event) {
     Variant& variant =
         impl_->variant(arguments.modes() != 0 ? arguments.modes() : impl_->definitions.modes);
-    const auto list = arguments.list();
-    if (list.size() != variant.parameters.size())
-        throw Error("kernel " + impl_->name + " takes " +
-                    std::to_string(written(variant.parameters)) + " arguments and was given " +
-                    std::to_string(written(list)) +
-                    " (a container counts as one; build(kernel, ...) passes it first)");
-    for (cl_uint i = 0; i < list.size(); ++i) {
-        const std::byte* data = arguments.data(list[i]);
-        variant.check(*impl_->device, impl_->definitions, impl_->name, i, list[i], data);
-        opencl([&] { variant.kernel.setArg(i, list[i].size, data); });
-    }
+    impl_->set(variant, arguments);
+    for (const Arguments::ClosedLists& closed : arguments.closed_lists())
+        detail::Build::give(closed.lists, variant.parameters[closed.index].name, impl_->name);
 
-    opencl([&] {
-        const cl::CommandQueue& queue = impl_->device->ordered_queue();
-        const auto& extents = range.global;
-        if (std::find(extents.begin(), extents.end(), 0u) != extents.end()) {
-            if (event != nullptr) queue.enqueueMarkerWithWaitList(nullptr, event);
-        } else {
-            queue.enqueueNDRangeKernel(
-                variant.kernel, cl::NullRange, nd_range(range.global, range.dimensions),
-                work_group(range, variant.required_work_group, variant.work_group_limit), nullptr,
-                event);
-        }
+    const detail::OtherQueues others(*impl_->device, arguments);
+    if (others.empty()) return impl_->launch(variant, range, event);
+    cl::Event done = others.run_between([&] {
+        cl::Event launched;
+        impl_->launch(variant, range, &launched);
+        return launched;
     });
+    if (event != nullptr) *event = std::move(done);
 }
 
 }  // namespace cellist

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <cellist/detail/arguments.hpp>
+#include <cellist/detail/owned.hpp>
 #include <cellist/device.hpp>
 #include <cellist/range.hpp>
 #include <cellist/struct.hpp>
@@ -22,9 +23,11 @@ struct Source {
     std::string options = {};
 };
 
-/// A kernel of the user's, built for a device. Programs are built once per device, source, types and
-/// options. `#include <cellist/lists.clh>` and `<cellist/glm.clh>` need no path. Movable, not
-/// copyable.
+/// A kernel of the user's, built for a device. A device keeps the last programs, by source, types and
+/// options, and builds each of them once. A source with an #include of its own, or "-include" among its
+/// options, is built for every Kernel, with the files as they are then.
+/// `#include <cellist/lists.clh>` and `<cellist/glm.clh>` need no path and do not count. Movable, not
+/// copyable; every use of a Kernel that was moved from throws Error.
 class Kernel {
 public:
     /// Builds `code` and takes the kernel called `name` from it. `uses` names the types that the
@@ -49,8 +52,12 @@ public:
     /// elsewhere containers are read-only, and Lists::validate() counts the inserts that were refused.
     ///
     /// Arguments in the kernel's order: scalars, adapted structs, Buffer, Lists, cl::Buffer, cl::Image,
-    /// cl::Sampler, LocalMemory. Throws Error if their number, or the kind, size or type of one does
-    /// not fit the kernel's parameters; signs and the widths of vectors are not compared.
+    /// cl::Pipe, cl::Sampler, LocalMemory. Throws Error if their number, or the kind, size or type of
+    /// one does not fit the kernel's parameters; signs and the widths of vectors are not compared.
+    ///
+    /// Lists and Buffers of a Device with another queue of the same context are ordered by events: the
+    /// kernel waits for that queue, and that queue for the kernel. Memory without an owner, such as a
+    /// cl::Buffer, is the caller's to order: see Device::enqueue_wait.
     template <class... Args>
     cl::Event run(const Range& range, const Args&... args) {
         detail::Arguments arguments;
@@ -78,7 +85,7 @@ private:
     }
 
     struct Impl;
-    std::unique_ptr<Impl> impl_;
+    detail::Owned<std::unique_ptr<Impl>> impl_;
 };
 
 }  // namespace cellist

@@ -3,6 +3,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstring>
+#include <memory>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -36,6 +37,13 @@ public:
         std::size_t size;    ///< in bytes
         std::string type;   ///< in OpenCL C: of a value, of a buffer's elements; empty if not known
         bool is_container;  ///< the nodes of a container, which hold records of this type
+        /// Whose queue orders the uses of this memory; null for memory of the user's own.
+        const DeviceState* owner;
+    };
+    /// A container that takes no inserts: no build of it is under way.
+    struct ClosedLists {
+        std::weak_ptr<const ListsCore> lists;
+        std::size_t index;  ///< of the argument that has its nodes
     };
 
     /// With room for what most kernels take.
@@ -55,7 +63,7 @@ public:
     }
     template <class T>
     void add(const Buffer<T>& buffer) {
-        add(buffer.cl());
+        add(buffer.memory());
         if constexpr (KnownOnDevice<T>) arguments_.back().type = DeviceType<T>::name();
     }
     template <class T>
@@ -67,22 +75,28 @@ public:
         const cl_mem handle = memory();
         append(Kind::memory, &handle, sizeof handle);
     }
+    void add(const Memory& memory) {
+        add(memory.cl());
+        arguments_.back().owner = memory.device().get();
+    }
     void add(const cl::Sampler& sampler) {
         const cl_sampler handle = sampler();
         append(Kind::sampler, &handle, sizeof handle);
     }
     void add(const LocalMemory& local) {
-        arguments_.push_back({Kind::local, 0, local.size_bytes, {}, false});
+        arguments_.push_back({Kind::local, 0, local.size_bytes, {}, false, nullptr});
     }
     void append(Kind kind, const void* data, std::size_t size) {
         const std::size_t offset = bytes_.size();
         bytes_.resize(offset + size);
         std::memcpy(bytes_.data() + offset, data, size);
-        arguments_.push_back({kind, offset, size, {}, false});
+        arguments_.push_back({kind, offset, size, {}, false, nullptr});
     }
 
     /// The arguments of another launch behind these.
     void append(const Arguments& others) {
+        for (const ClosedLists& closed : others.closed_)
+            closed_.push_back({closed.lists, closed.index + arguments_.size()});
         for (Argument argument : others.arguments_) {
             argument.offset += bytes_.size();
             arguments_.push_back(std::move(argument));
@@ -92,7 +106,7 @@ public:
     }
 
     /// The nodes of a container of records of this type.
-    void add_nodes(const cl::Buffer& nodes, const std::string& record) {
+    void add_nodes(const Memory& nodes, const std::string& record) {
         add(nodes);
         arguments_.back().type = record;
         arguments_.back().is_container = true;
@@ -103,6 +117,7 @@ public:
     [[nodiscard]] cl_uint modes() const { return modes_; }
 
     [[nodiscard]] std::span<const Argument> list() const { return arguments_; }
+    [[nodiscard]] std::span<const ClosedLists> closed_lists() const { return closed_; }
     [[nodiscard]] const std::byte* data(const Argument& argument) const {
         return argument.kind == Kind::local ? nullptr : bytes_.data() + argument.offset;
     }
@@ -111,6 +126,7 @@ private:
     void add_lists(const ListsCore& lists);
 
     std::vector<Argument> arguments_;
+    std::vector<ClosedLists> closed_;
     std::vector<std::byte> bytes_;
     cl_uint modes_ = 0;
 };

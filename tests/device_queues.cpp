@@ -1,0 +1,153 @@
+// Several devices on one context, each with a queue of its own: what a kernel of one does with lists and
+// buffers of another is ordered with the other's queue.
+#include <optional>
+
+#include "support/errors.hpp"
+#include "support/inserts.hpp"
+#include "support/storages.hpp"
+
+namespace cellist::test {
+namespace {
+
+constexpr auto source = R"(
+#include <cellist/lists.clh>
+
+kernel void insert(CELLIST_LISTS(Item, lists))
+{
+    const uint i = get_global_id(0);
+    Item item = { (float)(i % 100), i };
+    cellist_insert(lists, i % cellist_cells(lists), item);
+}
+
+kernel void insert_both(CELLIST_LISTS(Item, first), CELLIST_LISTS(Item, second))
+{
+    const uint i = get_global_id(0);
+    Item item = { (float)(i % 100), i };
+    cellist_insert(first, i % cellist_cells(first), item);
+    cellist_insert(second, i % cellist_cells(second), item);
+}
+
+kernel void sums(CELLIST_LISTS(Item, lists), global uint* sums)
+{
+    uint sum = 0;
+    cellist_for_each(lists, get_global_id(0), node) sum += cellist_get(lists, node).id;
+    sums[get_global_id(0)] = sum;
+}
+
+kernel void add(global uint* values, uint n) { values[get_global_id(0)] += n; }
+)";
+
+constexpr cl_uint cells = 17;
+constexpr cl_uint count = 2000;
+
+/// Two devices with a queue each, of which the second waits for an event.
+struct Scene {
+    explicit Scene(cl_command_queue_properties properties = 0)
+        : cl_device(device().queue().getInfo<CL_QUEUE_DEVICE>()),
+          context(cl_device),
+          owner(context, cl::CommandQueue(context, cl_device, properties)),
+          user(context, cl::CommandQueue(context, cl_device, properties)),
+          gate(context) {}
+    /// What the user's queue does from now on waits for open().
+    void close() {
+        gate = cl::UserEvent(context);
+        user.enqueue_wait({gate});
+    }
+    void open() { gate.setStatus(CL_COMPLETE); }
+
+    cl::Device cl_device;
+    cl::Context context;
+    Device owner, user;
+    cl::UserEvent gate;
+};
+
+bool is_complete(const cl::Event& event) {
+    return event.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() == CL_COMPLETE;
+}
+
+void require_lists(const Lists<Item>& lists) {
+    require_sound(lists, count);
+    const HostLists<Item> found = lists.download();
+    for (cl_uint cell = 0; cell < cells; ++cell)
+        for (const Item& item : found.cell(cell)) REQUIRE(item.id % cells == cell);
+}
+
+TEST_CASE("a build waits for the kernels of another queue") {
+    CELLIST_EACH_STORAGE(storage);
+    const auto properties =
+        GENERATE(cl_command_queue_properties{0},
+                 cl_command_queue_properties{CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE});
+    std::optional<Scene> scene;
+    try {
+        scene.emplace(properties);
+    } catch (const cl::Error&) {
+        return;  // the device has no such queue
+    }
+    Lists<Item> lists(scene->owner, {cells}, {.storage = storage, .capacity_nodes = 3000});
+    Lists<Item> others(scene->user, {cells}, {.storage = storage, .capacity_nodes = 3000});
+    Kernel insert(scene->user, source, "insert", lists);
+    for (int i = 0; i < 2; ++i) {
+        scene->close();
+        Pending<BuildReport> pending = lists.build_async(insert, count);
+        scene->owner.queue().flush();
+        REQUIRE_FALSE(is_complete(pending.event()));
+        scene->open();
+        require_complete(pending.get(), count);
+        require_lists(lists);
+    }
+    require_complete(lists.build(insert, count), count);
+    lists.sort(&Item::key);
+    REQUIRE(lists.pack().records.download() == lists.download().records());
+
+    // Lists of both queues at once.
+    Kernel both(scene->owner, source, "insert_both", lists, others);
+    scene->close();
+    auto pending = cellist::build_async([&] { both.run(count, lists, others); }, lists, others);
+    REQUIRE_FALSE(is_complete(pending.event()));
+    scene->open();
+    for (const BuildReport& report : pending.get()) require_complete(report, count);
+    require_lists(lists);
+    require_lists(others);
+}
+
+TEST_CASE("reading and writing wait for the kernels of another queue, and these for them") {
+    Scene scene;
+    Lists<Item> lists(scene.owner, {cells});
+    Buffer<cl_uint> sums(scene.owner, cells);
+    sums.fill(7);
+    Kernel insert(scene.owner, source, "insert", lists);
+    Kernel read(scene.user, source, "sums", lists);
+    Kernel add(scene.user, source, "add", lists);
+
+    // The kernel reads what was built before, though the queue of the lists goes on to clear them.
+    lists.build(insert, count);
+    scene.close();
+    const cl::Event done = read.run(cells, lists, sums);
+    lists.clear();
+    const cl::Event cleared = scene.owner.enqueue_marker();
+    scene.owner.queue().flush();
+    REQUIRE_FALSE(is_complete(cleared));
+    scene.open();
+    std::vector<cl_uint> expected(cells);
+    for (cl_uint i = 0; i < count; ++i) expected[i % cells] += i;
+    REQUIRE(sums.download() == expected);
+    REQUIRE(is_complete(done));
+    REQUIRE(lists.lengths().total == 0);
+
+    // A buffer: filled, added to by the other queue, read, filled again.
+    scene.close();
+    sums.fill(1);
+    add.run(cells, sums, cl_uint{4});
+    add.run(cells, sums, cl_uint{5});
+    Pending<std::vector<cl_uint>> first = sums.download_async();
+    sums.fill(2);
+    add.run(cells, sums, cl_uint{1});
+    scene.owner.queue().flush();
+    REQUIRE_FALSE(first.ready());
+    scene.open();
+    REQUIRE(first.get() == std::vector<cl_uint>(cells, 10));
+    REQUIRE(sums.download() == std::vector<cl_uint>(cells, 3));
+}
+
+}  // namespace
+}  // namespace cellist::test
