@@ -149,10 +149,14 @@ BuildReport ListsCore::build_once(const std::function<void()>& insert) {
 }
 
 BuildReport ListsCore::build(const std::function<void()>& insert) {
+    refuse_build();
+    const auto self = shared_from_this();
     std::exception_ptr first;
     for (std::size_t tried = 1;; ++tried) {
         try {
-            return build_once(insert);
+            const BuildReport report = build_once(insert);
+            refuse_orphan(self);
+            return report;
         } catch (const OpenClError& error) {
             if (!first) first = std::current_exception();
             // Drivers may find out in the midst of a build that they have no memory for it. Where all

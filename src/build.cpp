@@ -1,8 +1,26 @@
 #include "build.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include <cellist/detail/lists_core.hpp>
 
 namespace cellist::detail {
+
+/// Names the build whose function this thread runs, and that around it.
+class Build::Running {
+public:
+    explicit Running(Build& now) : build(now), outer(std::exchange(innermost, this)) {}
+    ~Running() { innermost = outer; }
+    Running(const Running&) = delete;
+    Running& operator=(const Running&) = delete;
+
+    static thread_local Running* innermost;
+    Build& build;
+    Running* const outer;
+};
+
+thread_local Build::Running* Build::Running::innermost = nullptr;
 
 /// Runs a part of the build; whatever goes wrong in it leaves all containers empty.
 template <class Step>
@@ -29,12 +47,24 @@ void Build::fail(bool without_pool) noexcept {
     }
 }
 
+/// The containers, so that none goes before the caller has ended: the function that inserts may replace
+/// them.
+std::vector<std::shared_ptr<ListsCore>> Build::held() const {
+    std::vector<std::shared_ptr<ListsCore>> held;
+    for (ListsCore* container : containers_) held.push_back(container->shared_from_this());
+    return held;
+}
+
 void Build::enqueue() {
+    const auto held = this->held();
     for (std::size_t i = 0; i < containers_.size(); ++i)
         for (std::size_t j = 0; j < i; ++j)
             if (containers_[i] == containers_[j])
                 throw Error("a build names the same container twice");
-    for (ListsCore* container : containers_) container->settle();
+    for (ListsCore* container : containers_) {
+        take_counts(*container);
+        container->settle();
+    }
     reports_.resize(containers_.size());
     guarded([&] {
         for (ListsCore* container : containers_) container->start();
@@ -44,8 +74,9 @@ void Build::enqueue() {
 }
 
 cl::Event Build::marker() {
+    if (error_) std::rethrow_exception(error_);
     cl::Event event;
-    guarded([&] { event = containers_.front()->marker(); });
+    guarded([&] { event = ListsCore::marker_of(containers_); });
     return event;
 }
 
@@ -55,15 +86,77 @@ void Build::enqueue_passes() {
     while (another) {
         ++passes_;
         for (ListsCore* container : containers_) container->storage().begin_pass();
-        insert_();
+        {
+            const Running running(*this);
+            insert_();
+        }
         another = false;
         for (ListsCore* container : containers_)
             if (container->storage().end_pass()) another = true;
+    }
+    for (const auto& bystander : bystanders_) count_refused(*bystander);
+}
+
+void Build::give(const std::weak_ptr<const ListsCore>& lists, const std::string& parameter,
+                 const std::string& kernel) {
+    if (Running::innermost == nullptr) return;
+    const std::shared_ptr<const ListsCore> given = lists.lock();
+    if (!given) return;
+    auto& all = Running::innermost->build.bystanders_;
+    auto known = std::find_if(all.begin(), all.end(), [&](const auto& bystander) {
+        return !bystander->counted && bystander->lists.lock() == given;
+    });
+    if (known == all.end()) {
+        auto made = std::make_unique<Bystander>();
+        made->first_pass = Running::innermost->build.passes_;
+        made->lists = lists;
+        made->description = given->description();
+        made->arrival = given->read_late(made->before);
+        known = all.insert(all.end(), std::move(made));
+    }
+    const std::string name = parameter.substr(0, parameter.rfind("_nodes"));
+    const std::string use = "parameter '" + name + "' of kernel " + kernel;
+    auto& uses = (*known)->uses;
+    if (std::find(uses.begin(), uses.end(), use) == uses.end()) uses.push_back(use);
+}
+
+void Build::take_counts(const ListsCore& lists) {
+    for (const Running* running = Running::innermost; running != nullptr; running = running->outer)
+        for (const auto& bystander : running->build.bystanders_)
+            if (bystander->lists.lock().get() == &lists) count_refused(*bystander);
+}
+
+/// Enqueues the reading of what the lists have refused. Nobody can read those that have gone.
+void Build::count_refused(Bystander& bystander) {
+    if (std::exchange(bystander.counted, true)) return;
+    if (const auto lists = bystander.lists.lock())
+        bystander.arrival = lists->read_late(bystander.after);
+    else
+        bystander.lists.reset();
+}
+
+/// Throws Error if lists that are no part of the build have refused inserts of its kernels. Blocks.
+void Build::check_bystanders() {
+    for (const auto& bystander : std::exchange(bystanders_, {})) {
+        bystander->arrival.wait();
+        const auto [low, high] = bystander->after;
+        const std::uint64_t before = wide(bystander->before[0], bystander->before[1]);
+        const std::uint64_t after = wide(low, high);
+        if (after <= before) continue;
+        const std::uint32_t passes = passes_ - bystander->first_pass + 1;
+        std::string uses;
+        for (const std::string& use : bystander->uses) uses += (uses.empty() ? "" : ", ") + use;
+        throw Error("the " + bystander->description + " (" + uses + ") refused " +
+                    std::to_string(after - before) + " inserts" +
+                    (passes > 1 ? " in " + std::to_string(passes) + " passes" : std::string()) +
+                    ", for they are no part of the build: name all containers that the "
+                    "kernels fill, as in cellist::build(function, lists, other_lists)");
     }
 }
 
 void Build::run_to_end() {
     for (;;) {
+        check_bystanders();
         bool complete = true;
         for (std::size_t i = 0; i < containers_.size(); ++i) {
             reports_[i].passes = passes_;
@@ -77,6 +170,7 @@ void Build::run_to_end() {
 const std::vector<BuildReport>& Build::finish() {
     if (!finished_) {
         const auto self = shared_from_this();
+        const auto held = this->held();
         for (ListsCore* container : containers_) container->set_pending(nullptr);
         guarded([&] { run_to_end(); });
         finished_ = true;

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <array>
 #include <exception>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
+#include <cellist/detail/arrival.hpp>
 #include <cellist/report.hpp>
 
 #include "storage.hpp"
@@ -34,9 +37,34 @@ public:
     /// Whether finish() can change the lists.
     [[nodiscard]] bool may_change() const;
 
+    /// Tells the build whose function this thread runs, if any, that a kernel is given lists that take no
+    /// inserts, as the nodes of which parameter. Comes before the kernel.
+    static void give(const std::weak_ptr<const ListsCore>& lists, const std::string& parameter,
+                     const std::string& kernel);
+    /// Tells the builds whose functions this thread runs that the counters of a container are about to be
+    /// cleared.
+    static void take_counts(const ListsCore& lists);
+
 private:
+    /// Lists that kernels of the build are given and that are no part of it. What they refuse would be
+    /// lost without a word.
+    struct Bystander {
+        std::weak_ptr<const ListsCore> lists;
+        std::string description;
+        std::vector<std::string> uses;  ///< by kernels
+        std::uint32_t first_pass = 0;
+        std::array<cl_uint, 2> before{};  ///< inserts that were refused, low and high word
+        std::array<cl_uint, 2> after{};
+        bool counted = false;  ///< `after` is on its way
+        Arrival arrival;
+    };
+    class Running;
+
+    [[nodiscard]] std::vector<std::shared_ptr<ListsCore>> held() const;
     void enqueue_passes();
     void run_to_end();
+    static void count_refused(Bystander& bystander);
+    void check_bystanders();
     void fail(bool without_pool) noexcept;
     template <class Step>
     void guarded(Step step);
@@ -44,6 +72,7 @@ private:
     std::vector<ListsCore*> containers_;
     std::function<void()> insert_;
     std::vector<BuildReport> reports_;
+    std::vector<std::unique_ptr<Bystander>> bystanders_;  ///< of the passes since the last review
     std::uint32_t passes_ = 0;
     bool finished_ = false;
     std::exception_ptr error_;

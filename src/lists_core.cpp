@@ -59,12 +59,28 @@ ListsCore::~ListsCore() {
 
 std::shared_ptr<Build> ListsCore::start_build(std::vector<ListsCore*> containers,
                                               std::function<void()> insert) {
-    for (const ListsCore* container : containers)
-        if (container->reading_slice_)
-            throw Error("a container is built again while a slice of it is read");
+    for (const ListsCore* container : containers) container->refuse_build();
     auto build = std::make_shared<Build>(std::move(containers), std::move(insert));
     build->enqueue();
     return build;
+}
+
+cl::Event ListsCore::marker_of(const std::vector<ListsCore*>& containers) {
+    const DeviceState& first = *containers.front()->device_;
+    std::vector<cl::Event> all;
+    for (const ListsCore* container : containers) {
+        const DeviceState& device = *container->device_;
+        if (device.queue() == first.queue()) continue;
+        all.push_back(device.marker());
+        opencl([&] { device.queue.flush(); });
+    }
+    if (all.empty()) return first.marker();
+    all.push_back(first.marker());
+    return opencl([&] {
+        cl::Event event;
+        first.queue.enqueueMarkerWithWaitList(&all, &event);
+        return event;
+    });
 }
 
 cl::Event ListsCore::marker(Build& build) { return build.marker(); }
@@ -98,13 +114,33 @@ void ListsCore::add_to(Arguments& arguments) const {
     storage_->add_to(arguments);
 }
 
+void ListsCore::refuse_orphan(const std::shared_ptr<ListsCore>& self) {
+    if (self.use_count() == 1) throw Error("the lists went before their build was finished");
+}
+
 void ListsCore::refuse_while_open() const {
     if (storage_->is_open())
         throw Error("a container is used while it is built: kernels may insert, and no more");
 }
 
+bool ListsCore::is_open() const { return storage_->is_open(); }
+
+void ListsCore::refuse_build() const {
+    refuse_while_open();
+    if (reading_slice_) throw Error("a container is built again while a slice of it is read");
+}
+
+Reading ListsCore::read_late(std::array<cl_uint, 2>& words) const {
+    return storage_->read_late(words);
+}
+
+std::string ListsCore::description() const {
+    return "lists of " + record() + " of shape " + shape_.to_string();
+}
+
 void ListsCore::clear() {
     refuse_while_open();
+    Build::take_counts(*this);
     settle();
     try {
         storage_->clear();
@@ -143,7 +179,10 @@ Kernel& ListsCore::kernel(const std::string& name, std::string_view source,
 
 Range ListsCore::cell_range() const { return Range::padded(shape_.cells()); }
 
-void Arguments::add_lists(const ListsCore& lists) { lists.add_to(*this); }
+void Arguments::add_lists(const ListsCore& lists) {
+    if (!lists.is_open()) closed_.push_back({lists.weak_from_this(), arguments_.size()});
+    lists.add_to(*this);
+}
 
 unsigned read_mode(const ListsCore& lists) { return lists.mode(); }
 
@@ -287,6 +326,9 @@ ListsCore::PlannedSlice ListsCore::plan_slice(std::uint64_t first,
 
 BuildReport ListsCore::build_slices(const std::function<void()>& insert,
                                     const std::function<void(const Slice&)>& read) {
+    refuse_build();
+    const auto self = shared_from_this();
+    Build::take_counts(*this);
     settle();
     BuildReport all;
     const auto take_all_cells = [this] {
@@ -330,6 +372,7 @@ BuildReport ListsCore::build_slices(const std::function<void()>& insert,
         empty_after_failure(false);
         throw;
     }
+    refuse_orphan(self);
     return all;
 }
 

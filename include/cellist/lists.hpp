@@ -13,6 +13,7 @@
 
 #include <cellist/detail/arrival.hpp>
 #include <cellist/detail/lists_core.hpp>
+#include <cellist/detail/owned.hpp>
 #include <cellist/device.hpp>
 #include <cellist/host_lists.hpp>
 #include <cellist/kernel.hpp>
@@ -53,7 +54,7 @@ struct Element<M[count]> {
 /// they can do. The heads take 4 bytes a cell, and a node takes the record and 4 bytes, rounded up to
 /// the alignment of both.
 ///
-/// Owned by value, movable, not copyable. What runs on the device is enqueued on the device's queue;
+/// Owned by value, movable, not copyable; every use of Lists that were moved from throws Error. What runs on the device is enqueued on the device's queue;
 /// calls that return results block until they have them. The others do not, with one exception: whatever
 /// uses lists with a pending build that may still change them ends that build, and blocks for it. Under
 /// Overflow::drop no build may, unless the storage is automatic.
@@ -65,7 +66,8 @@ public:
     /// Empty lists. Throws Error if the shape or the capacity exceeds a limit of the device or of
     /// the budget.
     Lists(const Device& device, const Shape& shape, const ListsOptions& options = {})
-        : core_(std::make_shared<detail::ListsCore>(device.state(), detail::definitions_of<T>(),
+        : core_("a Lists object",
+                std::make_shared<detail::ListsCore>(device.state(), detail::definitions_of<T>(),
                                                     shape, options)) {}
     Lists(Lists&&) noexcept = default;
     Lists& operator=(Lists&&) noexcept = default;
@@ -74,7 +76,12 @@ public:
     ~Lists() = default;
 
     /// Fills the lists anew: clears them, then runs `kernel(lists, args...)` over `range`. The lists
-    /// are the kernel's first parameters; `args` are the rest.
+    /// are the kernel's first parameters; `args` are the rest. What the lists held before is gone when
+    /// the kernel runs: a kernel that reads it runs before the build.
+    ///
+    /// Other containers among `args` are read-only. Where the kernel inserts into one, the build throws
+    /// Error, which names it. A container cannot be built, cleared, sorted or read while it is built;
+    /// this throws Error, too.
     ///
     /// If the pool is too small, the overflow policy decides: grow enlarges it to the exact demand
     /// and runs the kernel again, which must insert the same records again; stop and a demand over
@@ -97,7 +104,8 @@ public:
     /// Starts the same and does not block, but for a build of these lists that is still pending. The event completes after the first pass; get() runs more
     /// of them if the pool was too small, or throws. Until then the lists are incomplete, unless the
     /// policy is Overflow::drop: whatever uses them calls get() itself, blocks and throws in its place.
-    /// The kernel and the arguments that are memory must stay until then.
+    /// The kernel and the arguments that are memory must stay until then; the Lists object may go, and
+    /// get() returns the report all the same.
     template <class... Args>
     [[nodiscard]] Pending<BuildReport> build_async(Kernel& kernel, const Range& range,
                                                    const Args&... args) {
@@ -215,7 +223,7 @@ public:
         };
         const auto state = std::make_shared<State>();
         core_->download(state->done, state->offsets, [&](std::uint64_t count) -> void* {
-            state->records.resize(count);
+            state->records = detail::host_memory<T>(count);
             return state->records.data();
         });
         return {state->done.event(), [state, shape = shape()] {
@@ -295,7 +303,7 @@ private:
         return packed;
     }
 
-    std::shared_ptr<detail::ListsCore> core_;
+    detail::Owned<std::shared_ptr<detail::ListsCore>> core_;
 };
 
 namespace detail {
@@ -323,7 +331,8 @@ std::array<BuildReport, sizeof...(T)> build(std::invocable auto&& insert, Lists<
         *detail::ListsCore::start_build({&lists.core()...}, std::ref(insert)));
 }
 
-/// Starts the same and does not block; see Lists::build_async.
+/// Starts the same and does not block; see Lists::build_async. Where one of the containers has gone
+/// before get(), the others are empty and get() throws Error.
 template <class... T>
     requires(sizeof...(T) > 0)
 [[nodiscard]] Pending<std::array<BuildReport, sizeof...(T)>> build_async(

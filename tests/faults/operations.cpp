@@ -281,6 +281,38 @@ void build_both_later(Scene& scene) {
     require_all_stored(other, scene.oracle);
 }
 
+/// A kernel of the build reads a container that is no part of it.
+void build_beside_another(Scene& scene) {
+    const Buffer<cl_uint2> sums(scene.device, cell_count);
+    scene.lists_hold = Contents::empty;
+    const BuildReport report = scene.lists.build([&] {
+        scene.insert.run(range(), scene.lists, scene.cells, scene.records, insert_count);
+        scene.read.run(Range::padded(cell_count, 32), scene.other, sums);
+    });
+    scene.lists_hold = Contents::full;
+    require_all_stored(report, scene.oracle);
+}
+
+/// A kernel on another queue of the context. It stays for all tests.
+Kernel& insert_on_another_queue(const Scene& scene) {
+    const faults::Pause pause;
+    static Kernel* const kernel = [&] {
+        const cl::Device device = scene.device.context().getInfo<CL_CONTEXT_DEVICES>().front();
+        const Device user(scene.device.context(), cl::CommandQueue(scene.device.context(), device));
+        return new Kernel(user, source, "insert", type<Item>);
+    }();
+    return * kernel;
+}
+
+void build_by_another_queue(Scene& scene) {
+    Kernel& insert = insert_on_another_queue(scene);
+    scene.lists_hold = Contents::empty;
+    const BuildReport report =
+        scene.lists.build(insert, range(), scene.cells, scene.records, insert_count);
+    scene.lists_hold = Contents::full;
+    require_all_stored(report, scene.oracle);
+}
+
 void build_and_stop(Scene& scene) {
     std::optional<OverflowError> error;
     try {
@@ -460,6 +492,8 @@ constexpr Operation table[] = {
     {"build two containers", empty, build_both, repeated},
     {"build two containers that grow", empty, build_both, first, Room::too_little},
     {"build two containers later", empty, build_both_later, repeated},
+    {"build beside another container", empty, build_beside_another, repeated},
+    {"build by a kernel on another queue", empty, build_by_another_queue, repeated},
     {"build slices", empty, build_slices, repeated, Room::for_a_part, Overflow::grow, 4},
     {"clear", full, clear},
     {"sort by a member", full, sort_by_a_member},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -36,7 +37,7 @@ struct SortKey {
 /// Lists without the record's C++ type: a storage, and the kernels that read and sort any storage.
 /// The kernels see the record by its name in OpenCL C. Stays where it is: a build that is pending
 /// refers to it.
-class ListsCore {
+class ListsCore : public std::enable_shared_from_this<ListsCore> {
 public:
     ListsCore(std::shared_ptr<DeviceState> device, Definitions definitions, const Shape& shape,
               const ListsOptions& options);
@@ -49,6 +50,8 @@ public:
                                               std::function<void()> insert);
     /// Completes after the first passes. The build has failed where this throws.
     [[nodiscard]] static cl::Event marker(Build& build);
+    /// Completes when all that was enqueued on the queues of the containers has.
+    [[nodiscard]] static cl::Event marker_of(const std::vector<ListsCore*>& containers);
     /// The rest of a build: a report for each container. Blocks.
     static const std::vector<BuildReport>& finish(Build& build);
 
@@ -112,6 +115,15 @@ public:
     void settle_for_commands() const;
     /// Throws Error where the function that inserts uses the container that it fills.
     void refuse_while_open() const;
+    /// The same, and where a slice of it is read.
+    void refuse_build() const;
+
+    /// Whether kernels may insert now.
+    [[nodiscard]] bool is_open() const;
+    /// Enqueues the reading of the inserts that were refused for there was no build: low and high word.
+    [[nodiscard]] Reading read_late(std::array<cl_uint, 2>& words) const;
+    /// E.g. "lists of Hit of shape 17 x 3".
+    [[nodiscard]] std::string description() const;
 
     // For Build.
     [[nodiscard]] ListStorage& storage() const { return *storage_; }
@@ -127,6 +139,9 @@ public:
 
 private:
     [[nodiscard]] ListSorter& sorter();
+    /// Throws Error where no Lists object refers to a container that was built: the function that inserts
+    /// has replaced it.
+    static void refuse_orphan(const std::shared_ptr<ListsCore>& self);
     BuildReport build_once(const std::function<void()>& insert);
     void measure_walk(Trial& trial) const;
     void use(Storage storage);
