@@ -8,7 +8,8 @@
 
 #include "cases.hpp"
 #include "command_line.hpp"
-#include "figures.hpp"
+#include "files.hpp"
+#include "frame_json.hpp"
 #include "grid_options.hpp"
 #include "grid_report.hpp"
 #include "input_error.hpp"
@@ -92,7 +93,7 @@ bool run(const oit::GridOptions& options) {
     if (cases == 0) throw support::InputError("--filter " + options.filter + " leaves no case");
     std::cout << met << " of " << cases << " cases met\n";
     if (!options.json.empty())
-        oit::write_file(options.json, oit::dump(to_json(results, options, device), 2) + '\n');
+        support::write_file(options.json, oit::dump(to_json(results, options, device), 2) + '\n');
     return met == cases;
 }
 
