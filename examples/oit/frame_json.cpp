@@ -67,8 +67,8 @@ ordered_json json_of(const FrameOptions& options, std::string_view program) {
 
 ordered_json json_of(const Setting& setting) {
     const Quality& quality = setting.quality;
-    return {{"options", text(setting)},        {"method", setting.method->name},
-            {"exact", setting.method->exact},  {"size", or_null(quality.size)},
+    return {{"options", text(setting)},          {"method", setting.method->name},
+            {"exact", setting.method->exact},    {"size", or_null(quality.size)},
             {"layers", or_null(quality.layers)}, {"epsilon", as_read(quality.epsilon)},
             {"format", name_of(quality.format)}};
 }
@@ -82,12 +82,9 @@ ordered_json times_json(const Measurement& m) {
 }
 
 ordered_json json_of(const Comparison& c) {
-    return {{"psnr_db", finite_or_null(c.psnr_db)},
-            {"ssim", c.ssim},
-            {"max_abs_error", c.max_abs_error},
-            {"pixels_over_1_255", c.pixels_over},
-            {"pixels_explained", c.pixels_explained},
-            {"pixels_nan", c.pixels_nan}};
+    return {{"psnr_db", finite_or_null(c.psnr_db)},   {"ssim", c.ssim},
+            {"max_abs_error", c.max_abs_error},       {"pixels_over_1_255", c.pixels_over},
+            {"pixels_explained", c.pixels_explained}, {"pixels_nan", c.pixels_nan}};
 }
 
 std::string dump(const ordered_json& json, int indent) {

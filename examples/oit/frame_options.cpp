@@ -104,7 +104,8 @@ void read_blend(const std::string& text, FrameOptions& options) {
                "over, additive, multiplicative, absorb, or a file with an OpenCL C function");
     std::string function = support::read_file("--blend", text, most_bytes);
     if (function.find('\0') != std::string::npos)
-        throw InputError("--blend " + support::text_of(text) + ": it is no text, for it has a zero");
+        throw InputError("--blend " + support::text_of(text) +
+                         ": it is no text, for it has a zero");
     options.blend = Blend::user;
     options.blend_function = {std::move(function), text};
 }
@@ -289,8 +290,9 @@ Scene make_scene(const FrameOptions& options) {
     } else {
         std::error_code error;
         if (!std::filesystem::exists(options.scene, error))
-            throw InputError("'" + support::text_of(options.scene) + "' is neither a file nor a scene" +
-                             meant_scene(options.scene) + "; --help lists the scenes");
+            throw InputError("'" + support::text_of(options.scene) +
+                             "' is neither a file nor a scene" + meant_scene(options.scene) +
+                             "; --help lists the scenes");
         if (!std::filesystem::is_regular_file(options.scene, error))
             throw InputError("'" + support::text_of(options.scene) +
                              "' is no mesh: it is a folder or a device, and no regular file");

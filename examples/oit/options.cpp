@@ -172,7 +172,8 @@ Options parse_options(int count, const char* const* arguments) {
         "FILE");
     add("--write-reference", write_reference, "write the picture in double precision here", "FILE");
     add("--write-difference", write_difference,
-        "write how far the picture is from that: 16 times in .png and .jpg, as it is in .pfm and .exr",
+        "write how far the picture is from that: 16 times in .png and .jpg, as it is in .pfm and "
+        ".exr",
         "FILE");
     add("--json", json, "write the figures to this file", "FILE");
     add("--frames", frames, "timed frames, after those that warm up; times are medians", "N");

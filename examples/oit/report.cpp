@@ -99,8 +99,8 @@ void print_times(const Report& report, const Line& line) {
         line("raster + insert") << fixed(passes.raster_insert_ms, 2) << " ms\n";
         line("sort + blend") << fixed(passes.sort_blend_ms, 2) << " ms\n";
     }
-    line("frame") << fixed(report.times.milliseconds, 2) << " ms (median of " << report.options.frames
-                  << ")\n";
+    line("frame") << fixed(report.times.milliseconds, 2) << " ms (median of "
+                  << report.options.frames << ")\n";
 }
 
 // Where the pictures are.
@@ -168,8 +168,8 @@ void print(const Report& report, std::ostream& out) {
         return out << "  " << std::left << std::setw(18) << name << std::right;
     };
     const Options& options = report.options;
-    out << "cellist-oit " << support::text_of(std::filesystem::path(options.scene).filename()) << ", "
-        << options.width << 'x' << options.height << ", alpha " << options.alpha << ", "
+    out << "cellist-oit " << support::text_of(std::filesystem::path(options.scene).filename())
+        << ", " << options.width << 'x' << options.height << ", alpha " << options.alpha << ", "
         << (options.quality.layers ? nearest_text(*options.quality.layers) : "all layers")
         << (options.opaque_floor ? ", opaque floor" : "") << '\n';
     line("device") << report.device << " (driver " << report.driver << ")\n";

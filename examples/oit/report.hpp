@@ -29,8 +29,8 @@ struct Report {
     std::uint64_t method_bytes = 0;           ///< what the method keeps on the device
     std::uint64_t device_bytes = 0;
     std::uint64_t peak_bytes = 0;  ///< of the process in main memory, at most until now
-    bool blends_slices = false;  ///< as soon as each is built: the passes are not timed apart
-    std::uint32_t slices = 1;    ///< that the frame was built in
+    bool blends_slices = false;    ///< as soon as each is built: the passes are not timed apart
+    std::uint32_t slices = 1;      ///< that the frame was built in
     std::uint64_t pixels_nan = 0;
     float colour_max = 1;                  ///< brightest channel of a fragment, at most
     Measurement times{.setting = {}};      ///< of frames: from clearing to the image on the device

@@ -29,7 +29,8 @@ std::string meant_option(const CLI::App& app) {
 
 std::optional<std::string> parse_command_line(CLI::App& app, int count,
                                               const char* const* arguments) {
-    app.set_version_flag("--version", app.get_name() + " " + std::string(version()), "print the version");
+    app.set_version_flag("--version", app.get_name() + " " + std::string(version()),
+                         "print the version");
     try {
         app.parse(count, arguments);
         // Most likely a variable of the shell that is not set.

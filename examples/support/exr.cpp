@@ -54,8 +54,8 @@ std::string channel_list() {
 
 std::string header(int width, int height) {
     constexpr std::int32_t magic = 20000630, version = 2;
-    const std::string window =
-        bytes_of(std::int32_t{0}, std::int32_t{0}, std::int32_t{width - 1}, std::int32_t{height - 1});
+    const std::string window = bytes_of(std::int32_t{0}, std::int32_t{0}, std::int32_t{width - 1},
+                                        std::int32_t{height - 1});
     std::string file = bytes_of(magic, version);
     append_attribute(file, "channels", "chlist", channel_list());
     append_attribute(file, "compression", "compression", bytes_of(std::uint8_t{0}));
