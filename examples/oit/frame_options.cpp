@@ -105,7 +105,7 @@ void read_blend(const std::string& text, FrameOptions& options) {
     std::string function = support::read_file("--blend", text, most_bytes);
     if (function.find('\0') != std::string::npos)
         throw InputError("--blend " + support::text_of(text) +
-                         ": it is no text, for it has a zero");
+                         ": not a text, for it has a byte of 0");
     options.blend = Blend::user;
     options.blend_function = {std::move(function), text};
 }
@@ -294,8 +294,11 @@ Scene make_scene(const FrameOptions& options) {
                              "' is neither a file nor a scene" + meant_scene(options.scene) +
                              "; --help lists the scenes");
         if (!std::filesystem::is_regular_file(options.scene, error))
-            throw InputError("'" + support::text_of(options.scene) +
-                             "' is no mesh: it is a folder or a device, and no regular file");
+            throw InputError("'" + support::text_of(options.scene) + "' is " +
+                             (std::filesystem::is_directory(options.scene, error)
+                                  ? "a folder"
+                                  : "not a regular file") +
+                             ": expected a mesh file");
         support::Mesh mesh = support::load_mesh(options.scene);
         support::fit_to_unit_sphere(mesh);
         scene = scene_of(std::move(mesh), options.alpha);

@@ -1,7 +1,6 @@
 #include "command_line.hpp"
 
 #include <charconv>
-#include <csignal>
 #include <iostream>
 #include <vector>
 
@@ -95,7 +94,5 @@ std::string to_string(cellist::Storage storage) {
 void print_error(const std::string& name, const std::string& message) {
     std::cerr << name << ": " << first_line(message) << '\n';
 }
-
-void ignore_file_size_signal() { (void)std::signal(SIGXFSZ, SIG_IGN); }
 
 }  // namespace support

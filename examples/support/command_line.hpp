@@ -53,9 +53,6 @@ int run_program(const std::string& name, std::predicate auto&& program);
 /// Prints `message` after the program's name, without what follows its first line.
 void print_error(const std::string& name, const std::string& message);
 
-/// A file that would grow beyond the limit of the process is an error of write(), and no signal.
-void ignore_file_size_signal();
-
 }  // namespace support
 
 // ---- implementation

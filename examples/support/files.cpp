@@ -1,6 +1,7 @@
 #include "files.hpp"
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <random>
@@ -161,6 +162,8 @@ void check_output_path(const fs::path& path) {
         throw cannot_write(path, reason(errno));
 }
 
+void ignore_file_size_signal() { (void)std::signal(SIGXFSZ, SIG_IGN); }
+
 void flush_standard_output() {
     errno = 0;
     std::cout.flush();
@@ -192,10 +195,9 @@ std::string read_file(const std::string& name, const fs::path& path, std::size_t
         size += static_cast<std::size_t>(count);
     }
     ::close(file);
-    if (!is_regular) throw fail("it is no regular file");
+    if (!is_regular) throw fail("not a regular file");
     if (error != 0) throw fail(reason(error));
-    if (size > most_bytes)
-        throw fail("it has more than the " + std::to_string(most_bytes) + " bytes that are read");
+    if (size > most_bytes) throw fail("more than " + std::to_string(most_bytes) + " bytes");
     text.resize(size);
     return text;
 }

@@ -62,7 +62,7 @@ TEST_CASE("bad arguments are refused") {
              {"--write-reference oit.png", "same file"},
              {"--out f-%02d.png --json ./f-01.png", "same file"},
              {"--blend /dev/zero", "regular file"},
-             {"--blend zero.cl", "zero"},
+             {"--blend zero.cl", "byte of 0"},
              {"--blend large.cl", "1048576 bytes"},
              {"--check-every 2", "--budget"},
              {"--turn 90 --frames 1", "--frames is 1"},
@@ -105,8 +105,8 @@ TEST_CASE("bad arguments are refused") {
     program.require_refused("", "mesh");
     program.require_refused("nosuch.obj", "nosuch.obj");
     program.require_refused("gearwork", "(did you mean 'gearworks'?); --help lists the scenes");
-    program.require_refused("/dev/null", "no regular file");
-    program.require_refused("fifo", "no regular file", "mkfifo fifo;");
+    program.require_refused("/dev/null", "not a regular file");
+    program.require_refused("fifo", "not a regular file", "mkfifo fifo;");
     program.require_refused(".", "folder");
 }
 

@@ -8,7 +8,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "command_line.hpp"
 #include "input_error.hpp"
 #include "oit/support/program.hpp"
 
@@ -142,7 +141,7 @@ TEST_CASE("only regular files that end are read") {
     REQUIRE(mkfifo(fifo.c_str(), 0600) == 0);
     for (const fs::path& path : {fs::path("/dev/zero"), fifo, folder / "."}) {
         INFO(path);
-        CHECK(contains(refusal(path), "no regular file"));
+        CHECK(contains(refusal(path), "not a regular file"));
     }
     CHECK(contains(refusal(folder / "missing"), "No such file"));
 }
