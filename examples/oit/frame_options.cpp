@@ -16,6 +16,7 @@
 #include "method.hpp"
 #include "number_text.hpp"
 #include "raster/rasteriser.hpp"
+#include "read_file.hpp"
 #include "scenes.hpp"
 
 namespace oit {
@@ -102,7 +103,7 @@ void read_blend(const std::string& text, FrameOptions& options) {
     if (!std::filesystem::exists(text, error))
         refuse("--blend", text,
                "over, additive, multiplicative, absorb, or a file with an OpenCL C function");
-    std::string function = support::read_file("--blend", text, most_bytes);
+    std::string function = support::read_file("--blend file", text, most_bytes);
     if (function.find('\0') != std::string::npos)
         throw InputError("--blend " + support::text_of(text) +
                          ": not a text, for it has a byte of 0");

@@ -175,31 +175,4 @@ void flush_standard_output() {
     throw InputError("cannot write to stdout" + (error != 0 ? ": " + reason(error) : ""));
 }
 
-std::string read_file(const std::string& name, const fs::path& path, std::size_t most_bytes) {
-    const auto fail = [&](const std::string& why) {
-        return InputError(name + " " + text_of(path) + ": " + why);
-    };
-    // Opening a FIFO does not wait for its writer.
-    const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
-    if (file < 0) throw fail(reason(errno));
-    struct stat info {};
-    const bool is_regular = ::fstat(file, &info) == 0 && S_ISREG(info.st_mode);
-    std::string text(is_regular ? most_bytes + 1 : 0, '\0');
-    std::size_t size = 0;
-    int error = 0;
-    while (size < text.size()) {
-        const ssize_t count = ::read(file, text.data() + size, text.size() - size);
-        if (count < 0 && errno == EINTR) continue;
-        if (count < 0) error = errno;
-        if (count <= 0) break;
-        size += static_cast<std::size_t>(count);
-    }
-    ::close(file);
-    if (!is_regular) throw fail("not a regular file");
-    if (error != 0) throw fail(reason(error));
-    if (size > most_bytes) throw fail("more than " + std::to_string(most_bytes) + " bytes");
-    text.resize(size);
-    return text;
-}
-
 }  // namespace support

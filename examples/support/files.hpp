@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <exception>
 #include <filesystem>
 #include <string>
@@ -36,10 +35,5 @@ void ignore_file_size_signal();
 
 /// Throws InputError where not all that was printed has reached stdout, and OutputClosed.
 void flush_standard_output();
-
-/// The bytes of a regular file. Neither blocks nor reads without end: throws InputError, with `name`
-/// (of an option) at its beginning, where it is none, or has more than `most_bytes`.
-[[nodiscard]] std::string read_file(const std::string& name, const std::filesystem::path& path,
-                                    std::size_t most_bytes);
 
 }  // namespace support

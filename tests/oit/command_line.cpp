@@ -12,6 +12,7 @@ Program oit_program() { return Program(CELLIST_OIT_PROGRAM); }
 TEST_CASE("bad arguments are refused") {
     const Program program = oit_program();
     (void)program.folder().write("zero.cl", std::string("a\0b", 3));
+    (void)program.folder().write("empty.cl", "");
     (void)program.folder().write("large.cl", std::string((1 << 20) + 1, ' '));
     for (const auto& [arguments, named] : {
              std::pair<std::string, std::string>{"--size 0x0", "0x0"},
@@ -64,6 +65,7 @@ TEST_CASE("bad arguments are refused") {
              {"--blend /dev/zero", "regular file"},
              {"--blend zero.cl", "byte of 0"},
              {"--blend large.cl", "1048576 bytes"},
+             {"--blend empty.cl", "empty"},
              {"--check-every 2", "--budget"},
              {"--turn 90 --frames 1", "--frames is 1"},
              {"--until 1 --frames 1", "--frames is 1"},
@@ -72,7 +74,7 @@ TEST_CASE("bad arguments are refused") {
              {"--stereo -1", "-1"},
              {"--time inf", "inf"},
              {"--blend nosuch.cl", "nosuch.cl"},
-             {"--blend .", "regular file"},
+             {"--blend .", "folder"},
              {"--method nosuch", "weighted"},
              {"--method linkde", "did you mean 'linked'?"},
              {"--sise 3x3", "did you mean '--size'?"},

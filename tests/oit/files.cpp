@@ -124,27 +124,5 @@ TEST_CASE("a name in another encoding is written") {
     CHECK(contains(error_of(folder / "caf\xE9" / "x", "x"), "caf\\xE9/x'"));
 }
 
-TEST_CASE("only regular files that end are read") {
-    const auto refusal = [](const fs::path& path) {
-        try {
-            (void)support::read_file("--blend", path, 10);
-        } catch (const support::InputError& error) {
-            return std::string(error.what());
-        }
-        return std::string();
-    };
-    const Folder folder;
-    CHECK(support::read_file("--blend", folder.write("ten", "0123456789"), 10) == "0123456789");
-    CHECK(support::read_file("--blend", folder.write("none", ""), 10).empty());
-    CHECK(contains(refusal(folder.write("eleven", "0123456789a")), "more than the 10 bytes"));
-    const fs::path fifo = folder / "fifo";
-    REQUIRE(mkfifo(fifo.c_str(), 0600) == 0);
-    for (const fs::path& path : {fs::path("/dev/zero"), fifo, folder / "."}) {
-        INFO(path);
-        CHECK(contains(refusal(path), "not a regular file"));
-    }
-    CHECK(contains(refusal(folder / "missing"), "No such file"));
-}
-
 }  // namespace
 }  // namespace cellist::test
