@@ -269,9 +269,14 @@ void FrameArguments::read(FrameOptions& options) const {
     options.time = read_between("--time", time_, -1e6, 1e6, "seconds from -1000000 to 1000000");
     options.quality.depth_range = depth_range_;
     const bool one_sample = options.quality.samples == 1;
+    const SceneInfo* scene = find_scene(options.scene);
     const support::IdleOption idle[] = {
         {"--depth-range", one_sample,
          "--depth-range needs several samples: add --samples 2, 4 or 8"},
+        {"--alpha", scene != nullptr && !scene->takes_alpha,
+         "--alpha: the surfaces of '" + options.scene + "' have opacities of their own"},
+        {"--alpha", options.blend == Blend::absorb,
+         "--alpha: media absorb by their depth, so leave out --alpha or --blend absorb"},
         {"--resolve", one_sample, "--resolve needs several samples: add --samples 2, 4 or 8"},
     };
     support::refuse_idle_options(app_, idle);

@@ -53,6 +53,7 @@ TEST_CASE("bad arguments are refused") {
              {"--resolve sample", "--samples"},
              {"--resolve pixel", "--samples"},
              {"--time 1", "nothing moves"},
+             {"--alpha 0.5 --blend absorb", "absorb by their depth"},
              {"--until 1", "nothing moves"},
              {"--budget 40dB --check-every 2", "--until or --turn"},
              {"--out a.gif", ".exr"},
@@ -107,6 +108,7 @@ TEST_CASE("bad arguments are refused") {
     program.require_refused("", "mesh");
     program.require_refused("nosuch.obj", "nosuch.obj");
     program.require_refused("gearwork", "(did you mean 'gearworks'?); --help lists the scenes");
+    program.require_refused("extreme-layers --alpha 0.5", "opacities of their own");
     program.require_refused("/dev/null", "not a regular file");
     program.require_refused("fifo", "not a regular file", "mkfifo fifo;");
     program.require_refused(".", "folder");
