@@ -135,7 +135,7 @@ std::string take_out_file(int& argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-    support::ignore_file_size_signal();
+    support::prepare_output();
     const std::string out_file = take_out_file(argc, argv);
     if (!out_file.empty()) support::check_output_path(out_file);
     benchmark::Initialize(&argc, argv);

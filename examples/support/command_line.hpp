@@ -62,7 +62,7 @@ void print_error(const std::string& name, const std::string& message);
 #include "files.hpp"
 
 int support::run_program(const std::string& name, std::predicate auto&& program) {
-    ignore_file_size_signal();
+    prepare_output();
     try {
         const bool is_good = program();
         flush_standard_output();

@@ -1,5 +1,6 @@
 #include "files.hpp"
 
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -24,6 +25,11 @@ std::string reason(int error) { return std::generic_category().message(error); }
 
 InputError cannot_write(const fs::path& path, const std::string& why) {
     return InputError("cannot write '" + text_of(path) + "': " + why);
+}
+
+[[noreturn]] void throw_stdout_error(int error) {
+    if (error == EPIPE) throw OutputClosed();
+    throw InputError("cannot write to stdout" + (error != 0 ? ": " + reason(error) : ""));
 }
 
 // The length of the UTF-8 sequence at the beginning of a text (RFC 3629), or 0.
@@ -92,6 +98,7 @@ int write_directly(const fs::path& path, std::string_view bytes) {
 int replace(const fs::path& path, std::string_view bytes) {
     struct stat old {};
     const bool exists = ::stat(path.c_str(), &old) == 0;
+    if (!exists && errno != ENOENT) return errno;
     if (exists && ::access(path.c_str(), W_OK) != 0) return errno;
     const fs::path unfinished =
         path.parent_path() / (".cellist-" + std::to_string(std::random_device{}()));
@@ -138,8 +145,8 @@ bool is_standard_output(const fs::path& path) {
 
 void write_file(const fs::path& path, std::string_view bytes) {
     if (is_standard_output(path)) {
-        std::cout.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
         flush_standard_output();
+        if (const int error = write_all(STDOUT_FILENO, bytes)) throw_stdout_error(error);
         return;
     }
     const fs::path target = target_of(path);
@@ -162,7 +169,14 @@ void check_output_path(const fs::path& path) {
         throw cannot_write(path, reason(errno));
 }
 
-void ignore_file_size_signal() { (void)std::signal(SIGXFSZ, SIG_IGN); }
+void prepare_output() {
+    // More than a program prints: stdio forgets the reason where it fails before the flush.
+    static std::array<char, 1 << 16> buffer;
+    (void)std::signal(SIGXFSZ, SIG_IGN);
+    static const bool is_buffered = ::isatty(STDOUT_FILENO) == 1 ||
+                                    std::setvbuf(stdout, buffer.data(), _IOFBF, buffer.size()) == 0;
+    (void)is_buffered;
+}
 
 void flush_standard_output() {
     errno = 0;
@@ -171,8 +185,7 @@ void flush_standard_output() {
     const int error = errno;
     // Said once: nothing that is left over fails again at exit.
     std::cout.setstate(std::ios::badbit);
-    if (error == EPIPE) throw OutputClosed();
-    throw InputError("cannot write to stdout" + (error != 0 ? ": " + reason(error) : ""));
+    throw_stdout_error(error);
 }
 
 }  // namespace support

@@ -30,8 +30,9 @@ void write_file(const std::filesystem::path& path, std::string_view bytes);
 /// Throws InputError, with the reason, where write_file() is known to fail: for a check before long work.
 void check_output_path(const std::filesystem::path& path);
 
-/// A file that would grow beyond the limit of the process is an error of write() then, and no signal.
-void ignore_file_size_signal();
+/// Call this before anything is printed, so that errors of output have their reason: a file beyond the
+/// limit of the process is an error of write() and no signal, and stdout is written when it is flushed.
+void prepare_output();
 
 /// Throws InputError where not all that was printed has reached stdout, and OutputClosed.
 void flush_standard_output();

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 class FileSizeLimit {
 public:
     explicit FileSizeLimit(rlim_t bytes) {
-        support::ignore_file_size_signal();
+        support::prepare_output();
         getrlimit(RLIMIT_FSIZE, &old_);
         const rlimit limit{bytes, old_.rlim_max};
         setrlimit(RLIMIT_FSIZE, &limit);

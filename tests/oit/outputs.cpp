@@ -18,8 +18,9 @@ void require_full(const Program& program, const std::string& arguments, const st
 TEST_CASE("a full disk is an error for every file of cellist-oit") {
     const Program program(CELLIST_OIT_PROGRAM);
     (void)program.folder().write("oit.png", "as it was");
-    for (const std::string option : {"--out", "--write-reference", "--write-difference", "--json"})
-        require_full(program, small + ("--out x.png " + option) + " /dev/full", "'/dev/full'");
+    for (const std::string options : {"--out", "--out x.png --write-reference",
+                                      "--out x.png --write-difference", "--out x.png --json"})
+        require_full(program, small + options + " /dev/full", "'/dev/full'");
     // What follows the # are the redirections of Program::run().
     require_full(program, small + std::string("--out x.png 2>stderr >/dev/full #"), "to stdout");
     require_full(program, small + std::string("--out - 2>stderr >/dev/full #"), "to stdout");
