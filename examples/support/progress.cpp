@@ -19,7 +19,9 @@ void Progress::update(double fraction) {
     if (on_terminal_) {
         std::fprintf(out_, "\r%s %3d %%", label_.c_str(), percent);
     } else {
-        const auto passed = Clock::now() - start_;
+        const Clock::time_point now = Clock::now();
+        if (!start_) start_ = now;
+        const auto passed = now - *start_;
         if (passed < next_) return;
         while (next_ <= passed) next_ += next_ / 2 + std::chrono::milliseconds(1);
         std::fprintf(out_, "%s %d %%\n", label_.c_str(), percent);

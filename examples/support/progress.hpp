@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <optional>
 #include <string>
 
 namespace support {
@@ -28,8 +29,8 @@ private:
     std::FILE* out_;
     bool on_terminal_;
     int percent_ = -1;
-    Clock::time_point start_ = Clock::now();
-    std::chrono::milliseconds next_;  ///< when a line is due, from the start
+    std::optional<Clock::time_point> start_ = {};  ///< of the work: the first update
+    std::chrono::milliseconds next_;               ///< when a line is due, from the start
 };
 
 }  // namespace support
