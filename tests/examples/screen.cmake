@@ -1,5 +1,6 @@
 # Fails unless a program says its version, and ends with exit code 1 and one line on stderr where
 # stdout is full.
+separate_arguments(arguments UNIX_COMMAND "${arguments}")
 cmake_path(GET program STEM name)
 execute_process(COMMAND "${program}" --version RESULT_VARIABLE code OUTPUT_VARIABLE out)
 if(NOT code EQUAL 0 OR NOT out MATCHES "^${name} [0-9]+\\.[0-9]+\\.[0-9]+\n$")
