@@ -17,16 +17,19 @@
 
 #include <cellist/opencl.hpp>
 
+#include "files.hpp"
 #include "support/suite.hpp"
 
 namespace {
 
 constexpr const char* usage =
     "usage: cellist_bench [--effort=tiny|quick|full] [--nodes=N] [--occupancy=K] [--threads=T]\n"
+    "                     [--version]\n"
     "                     [options of Google Benchmark; see --help]\n"
     "  --nodes      records of the workload that ratios are taken of; 1,024 at least\n"
     "  --occupancy  records of a cell, on average; the number of cells is rounded down to a power "
     "of 2\n"
+    "  --benchmark_out=FILE  the results as JSON\n"
     "  --threads    of the peers in C++; without it as many as the device has compute units\n"
     "CELLIST_DEVICE names the device.\n";
 
@@ -37,6 +40,7 @@ struct Options {
     cl_uint nodes = 0;
     cl_uint occupancy = 16;
     cl_uint threads = 0;
+    bool version = false;
 };
 
 cl_uint number(std::string_view text) {
@@ -71,7 +75,9 @@ Options parse(int argc, char** argv) {
         const std::string_view name = argument.substr(0, equals);
         const std::string_view value =
             equals == std::string_view::npos ? "" : argument.substr(equals + 1);
-        if (name == "--effort")
+        if (argument == "--version")
+            options.version = true;
+        else if (name == "--effort")
             options.effort = effort(value);
         else if (name == "--nodes")
             options.nodes = nodes(value);
@@ -112,9 +118,26 @@ std::string bus_of(const cellist::Device& device) {
     return text.data();
 }
 
+/// What Google Benchmark would write to --benchmark_out without looking whether it could: taken out of
+/// the arguments, so that it does not.
+std::string take_out_file(int& argc, char** argv) {
+    constexpr std::string_view option = "--benchmark_out=";
+    std::string file;
+    const auto is_other = [&](const char* argument) {
+        if (!std::string_view(argument).starts_with(option)) return true;
+        file = argument + option.size();
+        return false;
+    };
+    argc = static_cast<int>(std::stable_partition(argv, argv + argc, is_other) - argv);
+    return file;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
+    support::prepare_output();
+    const std::string out_file = take_out_file(argc, argv);
+    if (!out_file.empty()) support::check_output_path(out_file);
     benchmark::Initialize(&argc, argv);
     Options options;
     try {
@@ -122,6 +145,12 @@ int main(int argc, char** argv) try {
     } catch (const std::invalid_argument& error) {
         std::cerr << "cellist_bench: " << error.what() << '\n' << usage;
         return 2;
+    }
+
+    if (options.version) {
+        std::cout << "cellist_bench " CELLIST_VERSION "\n";
+        support::flush_standard_output();
+        return 0;
     }
 
     const cellist::Device device = profiled(cellist::Device::choose());
@@ -161,9 +190,12 @@ int main(int argc, char** argv) try {
 #ifdef BENCH_BOOST_COMPUTE
     add_peer_boost_compute(suite);
 #endif
-    const bool ok = suite.run();
+    const bool ok = suite.run(out_file);
     benchmark::Shutdown();
+    support::flush_standard_output();
     return ok ? 0 : 1;
+} catch (const support::OutputClosed&) {
+    return 1;
 } catch (const std::exception& error) {
     std::cerr << "cellist_bench: " << error.what() << '\n';
     return 1;

@@ -12,6 +12,7 @@
 """
 
 import argparse
+import os
 import pathlib
 import sys
 
@@ -22,6 +23,7 @@ import oit_tables
 import plots
 import ratios
 import tables
+import whole_files
 
 
 def _merge(options):
@@ -49,7 +51,7 @@ def _plots(options):
     directory.mkdir(parents=True, exist_ok=True)
     for name, svg in plots.draw(figures.load(options.results)).items():
         path = directory / f"{name}.svg"
-        path.write_text(svg, encoding="utf-8")
+        whole_files.write_text(path, svg)
         print(path)
 
 
@@ -92,7 +94,13 @@ def main():
     generated.add_argument("--check", action="store_true")
     generated.set_defaults(run=_documents)
     options = parser.parse_args()
-    options.run(options)
+    try:
+        options.run(options)
+        sys.stdout.flush()
+    except OSError as error:
+        # What is left over would fail again, and say so, at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        sys.exit(1 if isinstance(error, BrokenPipeError) else f"bench/report: {error}")
 
 
 main()

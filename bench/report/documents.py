@@ -11,6 +11,7 @@ import figures
 import oit_tables
 import plots
 import tables
+import whole_files
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENTS = ("README.md", "docs/performance.md", "docs/transparency.md")
@@ -72,7 +73,7 @@ def _contents():
 
 def write():
     for path, text in _contents().items():
-        path.write_text(text, encoding="utf-8")
+        whole_files.write_text(path, text)
 
 
 def outdated():

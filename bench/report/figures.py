@@ -12,6 +12,8 @@
 
 import json
 
+import whole_files
+
 
 def _number(text):
     return int(text) if text.isdigit() else text
@@ -94,11 +96,10 @@ def load(path):
 
 def save(results, path):
     """Writes results with a line for each item of a list."""
-    with open(path, "w", encoding="utf-8") as file:
-        head = {key: value for key, value in results.items() if not isinstance(value, list)}
-        file.write(json.dumps(head, indent=1)[:-2])
-        for key, items in results.items():
-            if isinstance(items, list):
-                lines = ",\n".join("  " + json.dumps(item) for item in items)
-                file.write(f',\n "{key}": [\n{lines}\n ]')
-        file.write("\n}\n")
+    head = {key: value for key, value in results.items() if not isinstance(value, list)}
+    text = json.dumps(head, indent=1)[:-2]
+    for key, items in results.items():
+        if isinstance(items, list):
+            lines = ",\n".join("  " + json.dumps(item) for item in items)
+            text += f',\n "{key}": [\n{lines}\n ]'
+    whole_files.write_text(path, text + "\n}\n")

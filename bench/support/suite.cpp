@@ -1,10 +1,46 @@
 #include "support/suite.hpp"
 
 #include <algorithm>
+#include <memory>
+#include <sstream>
 
 #include <benchmark/benchmark.h>
 
+#include "files.hpp"
+
 namespace bench {
+namespace {
+
+/// Prints to the screen, and keeps the same as JSON.
+class Reporters : public benchmark::BenchmarkReporter {
+public:
+    Reporters() {
+        json_.SetOutputStream(&text_);
+        json_.SetErrorStream(&text_);
+    }
+    bool ReportContext(const Context& context) override {
+        screen_->SetOutputStream(&GetOutputStream());
+        screen_->SetErrorStream(&GetErrorStream());
+        return screen_->ReportContext(context) && json_.ReportContext(context);
+    }
+    void ReportRuns(const std::vector<Run>& runs) override {
+        screen_->ReportRuns(runs);
+        json_.ReportRuns(runs);
+    }
+    void Finalize() override {
+        screen_->Finalize();
+        json_.Finalize();
+    }
+    [[nodiscard]] std::string json() const { return text_.str(); }
+
+private:
+    std::unique_ptr<benchmark::BenchmarkReporter> screen_{
+        benchmark::CreateDefaultDisplayReporter()};
+    benchmark::JSONReporter json_;
+    std::ostringstream text_;
+};
+
+}  // namespace
 
 Suite::Suite(const cellist::Device& device, Effort effort, cl_uint nodes, cl_uint occupancy,
              unsigned threads)
@@ -87,8 +123,10 @@ void Suite::add(const std::string& name, std::function<Result()> measure) {
         ->Iterations(1);
 }
 
-bool Suite::run() {
-    const std::size_t count = benchmark::RunSpecifiedBenchmarks();
+bool Suite::run(const std::filesystem::path& out) {
+    Reporters reporters;
+    const std::size_t count = benchmark::RunSpecifiedBenchmarks(&reporters);
+    if (!out.empty() && count > 0) support::write_file(out, reporters.json());
     return count > 0 && failures_ == 0;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <string>
@@ -60,8 +61,9 @@ public:
     /// case fail. Cases that were added before under the same name are left out.
     void add(const std::string& name, std::function<Result()> measure);
 
-    /// Runs the cases that Google Benchmark's options select. True if all went well.
-    [[nodiscard]] bool run();
+    /// Runs the cases that Google Benchmark's options select, and writes the results as JSON unless
+    /// `out` is empty. True if all went well. Throws as support::write_file() does.
+    [[nodiscard]] bool run(const std::filesystem::path& out);
 
 private:
     const cellist::Device& device_;

@@ -35,5 +35,6 @@ int main() {
     auto lists = hits.download();
     for (Hit hit : lists[{640, 360}]) std::cout << hit.depth << " is point " << hit.id << "\n";
     std::cout << report.stored << " points stored on " << device.info().name << "\n";
-    return report.stored == 2'000'000 && lists[{640, 360}].size() == 3 ? 0 : 1;
+    const bool good = report.stored == 2'000'000 && lists[{640, 360}].size() == 3;
+    return good && std::cout.flush() ? 0 : 1;
 }

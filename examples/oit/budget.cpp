@@ -41,6 +41,16 @@ std::optional<double> fraction(std::string_view text) {
     return *numerator / *denominator;
 }
 
+// What stands before "dB", in any case of letters and with spaces between them or not.
+std::optional<std::string_view> before_unit(std::string_view text) {
+    if (text.size() < 2) return {};
+    const std::string_view unit = text.substr(text.size() - 2);
+    if ((unit[0] != 'd' && unit[0] != 'D') || (unit[1] != 'b' && unit[1] != 'B')) return {};
+    text.remove_suffix(2);
+    while (text.ends_with(' ')) text.remove_suffix(1);
+    return text;
+}
+
 }  // namespace
 
 double PictureError::psnr_db() const { return -10 * std::log10(mean_square); }
@@ -68,8 +78,8 @@ Budget parse_budget(std::string_view text) {
     constexpr std::string_view expected =
         "expected a PSNR such as 40dB, or a largest error such as 1/255 or 0.004";
     constexpr double most_db = 200;
-    if (text.ends_with("dB")) {
-        const auto psnr = number(text.substr(0, text.size() - 2));
+    if (const auto decibels = before_unit(text)) {
+        const auto psnr = number(*decibels);
         if (!psnr) refuse(text, std::string(expected));
         if (!(*psnr > 0 && *psnr <= most_db))
             refuse(text, "a PSNR lies above 0 dB, and at 200 dB at most");

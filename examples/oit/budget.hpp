@@ -46,7 +46,7 @@ struct Budget {
     [[nodiscard]] std::string text() const;
 };
 
-/// Reads "40dB", "1/255" or "0.004". Throws InputError at anything else, and at limits that every
+/// Reads "40dB" (also "40 db"), "1/255" or "0.004". Throws InputError at anything else, and at limits that every
 /// picture meets or none can.
 [[nodiscard]] Budget parse_budget(std::string_view text);
 

@@ -1,20 +1,22 @@
 #include "frame_options.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <string_view>
 #include <utility>
 
 #include <CLI/CLI.hpp>
 
+#include "closest.hpp"
 #include "command_line.hpp"
+#include "files.hpp"
 #include "input_error.hpp"
 #include "mesh.hpp"
 #include "method.hpp"
 #include "number_text.hpp"
 #include "raster/rasteriser.hpp"
+#include "read_file.hpp"
 #include "scenes.hpp"
 
 namespace oit {
@@ -88,13 +90,6 @@ constexpr std::pair<std::string_view, Blend> blend_kinds[] = {
     {"absorb", Blend::absorb},
 };
 
-std::string blend_text(const FrameOptions& options) {
-    if (options.blend_function) return options.blend_function->file_name;
-    for (const auto& [name, blend] : blend_kinds)
-        if (options.blend == blend) return std::string(name);
-    return {};
-}
-
 // A kind of blending, or a file with a function.
 void read_blend(const std::string& text, FrameOptions& options) {
     if (text.empty()) return;
@@ -103,13 +98,17 @@ void read_blend(const std::string& text, FrameOptions& options) {
             options.blend = blend;
             return;
         }
-    std::ifstream file(text, std::ios::binary);
+    constexpr std::size_t most_bytes = 1 << 20;
     std::error_code error;
-    if (!file || std::filesystem::is_directory(text, error))
+    if (!std::filesystem::exists(text, error))
         refuse("--blend", text,
                "over, additive, multiplicative, absorb, or a file with an OpenCL C function");
+    std::string function = support::read_file("--blend file", text, most_bytes);
+    if (function.find('\0') != std::string::npos)
+        throw InputError("--blend " + support::text_of(text) +
+                         ": not a text, for it has a byte of 0");
     options.blend = Blend::user;
-    options.blend_function = {{std::istreambuf_iterator<char>(file), {}}, text};
+    options.blend_function = {std::move(function), text};
 }
 
 std::optional<support::UpAxis> read_up(const std::string& text) {
@@ -140,7 +139,7 @@ Scene scene_of_files(const FrameOptions& options) {
         support::Mesh& mesh = placed.back().mesh;
         support::turn_up(mesh, options.up.value_or(mesh.up));
         meshes.push_back(&mesh);
-        origins.push_back({.file = file.path.string(),
+        origins.push_back({.file = support::text_of(file.path),
                            .alpha = file.alpha,
                            .triangles = mesh.triangles.size(),
                            .ignored_textures = mesh.ignored_textures,
@@ -163,11 +162,20 @@ void set_blend(Scene& scene, Blend blend) {
 bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
     // Paths that cannot be followed are refused where they are opened.
     std::error_code error;
+    if (support::is_standard_output(a)) return support::is_standard_output(b);
+    // Several outputs may go to /dev/null.
+    if (std::filesystem::is_character_file(a, error)) return false;
     if (std::filesystem::equivalent(a, b, error)) return true;
     const auto full = [&](const std::filesystem::path& path) {
         return std::filesystem::weakly_canonical(std::filesystem::absolute(path, error), error);
     };
     return full(a) == full(b) && !error;
+}
+
+std::string meant_scene(const std::string& text) {
+    std::vector<std::string> names;
+    for (const SceneInfo& info : scenes()) names.emplace_back(info.name);
+    return support::did_you_mean(text, names);
 }
 
 // The largest buffers of a frame: image and opaque colour with 16 bytes a sample.
@@ -189,6 +197,13 @@ void check_size(const FrameOptions& options, const cellist::Device& device) {
 }
 
 }  // namespace
+
+std::string blend_text(const FrameOptions& options) {
+    if (options.blend_function) return options.blend_function->file_name;
+    for (const auto& [name, blend] : blend_kinds)
+        if (options.blend == blend) return std::string(name);
+    return {};
+}
 
 void add_option(CLI::App& app, const char* name, std::string& value, const char* what,
                 const char* type) {
@@ -216,7 +231,7 @@ void check_outputs(const FrameOptions& options, std::span<const NamedFile> outpu
         for (const auto& [other, its_path] : known)
             if (same_file(path, its_path))
                 throw InputError(std::string(name) + " and " + std::string(other) +
-                                 " name the same file, '" + path.string() + "'");
+                                 " name the same file, '" + support::text_of(path) + "'");
         known.push_back(output);
     }
 }
@@ -241,7 +256,8 @@ std::string help_on_tables() {
 }
 
 FrameArguments::FrameArguments(CLI::App& app, const FrameOptions& options)
-    : scene_(options.scene.empty() ? std::vector<std::string>{} : arguments_of(options)),
+    : app_(app),
+      scene_(options.scene.empty() ? std::vector<std::string>{} : arguments_of(options)),
       size_(std::to_string(options.width) + "x" + std::to_string(options.height)),
       alpha_(shortest(options.alpha)),
       up_(),
@@ -317,12 +333,18 @@ void FrameArguments::read(FrameOptions& options) const {
         options.eye_separation = read_between("--stereo", eyes_, 0, 1, "a distance from 0 to 1");
     options.time = read_between("--time", time_, -1e6, 1e6, "seconds from -1000000 to 1000000");
     options.quality.depth_range = depth_range_;
-    for (const auto& [option, given] :
-         {std::pair("--depth-range", depth_range_),
-          std::pair("--resolve sample", options.quality.resolve == Resolve::per_sample)})
-        if (given && options.quality.samples == 1)
-            throw InputError(std::string(option) +
-                             " needs several samples: add --samples 2, 4 or 8");
+    const bool one_sample = options.quality.samples == 1;
+    const SceneInfo* scene = find_scene(options.scene);
+    const support::IdleOption idle[] = {
+        {"--depth-range", one_sample,
+         "--depth-range needs several samples: add --samples 2, 4 or 8"},
+        {"--alpha", scene != nullptr && !scene->takes_alpha,
+         "--alpha: the surfaces of '" + options.scene + "' have opacities of their own"},
+        {"--alpha", options.blend == Blend::absorb,
+         "--alpha: media absorb by their depth, so leave out --alpha or --blend absorb"},
+        {"--resolve", one_sample, "--resolve needs several samples: add --samples 2, 4 or 8"},
+    };
+    support::refuse_idle_options(app_, idle);
 }
 
 cellist::Device choose_device(const FrameOptions& options) {
@@ -340,7 +362,8 @@ MeshFile mesh_file(const std::string& text) {
     const std::size_t colon = text.rfind(':');
     if (exists(text)) return {text, {}};
     if (colon == std::string::npos || !exists(text.substr(0, colon)))
-        throw InputError("'" + text + "' is neither a file nor a scene; --help lists the scenes");
+        throw InputError("'" + support::text_of(text) + "' is neither a file nor a scene" +
+                         meant_scene(text) + "; --help lists the scenes");
     const auto alpha = parse<float>(std::string_view(text).substr(colon + 1));
     if (!alpha || !(*alpha >= 0 && *alpha <= 1))
         throw InputError("'" + text +
@@ -352,7 +375,8 @@ MeshFile mesh_file(const std::string& text) {
 std::string title_of(const FrameOptions& options) {
     std::string title;
     for (const std::string& argument : arguments_of(options))
-        title += (title.empty() ? "" : " + ") + std::filesystem::path(argument).filename().string();
+        title += (title.empty() ? "" : " + ") +
+                 support::text_of(std::filesystem::path(argument).filename());
     return title;
 }
 
@@ -369,7 +393,15 @@ Scene make_scene(const FrameOptions& options) {
     const SceneInfo* info = find_scene(options.scene);
     Scene scene = info != nullptr ? info->make(options.alpha) : scene_of_files(options);
     if (options.blend) set_blend(scene, *options.blend);
+    if (options.time != 0) require_motion(scene, options, "--time");
     return scene;
+}
+
+void require_motion(const Scene& scene, const FrameOptions& options, const std::string& option) {
+    const auto moves = [](const Instance& instance) { return instance.turns_per_second != 0; };
+    if (std::ranges::none_of(scene.instances, moves))
+        throw InputError(option + ": nothing moves in '" + support::text_of(options.scene) +
+                         "', so leave it out");
 }
 
 std::vector<raster::View> make_views(const FrameOptions& options) {

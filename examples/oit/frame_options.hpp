@@ -36,25 +36,30 @@ struct FrameOptions {
     std::optional<Blend> blend = {};  ///< of all transparent surfaces; else the scene decides
     std::optional<BlendFunction> blend_function = {};
     std::string device = {};
+    std::vector<std::string> arguments = {};  ///< of the program, for its report
 };
 
 /// The texts of these options on a command line.
 class FrameArguments {
 public:
-    /// Adds the options to `app`, `options` being their defaults.
+    /// Adds the options to `app`, which must outlive it, `options` being their defaults.
     FrameArguments(CLI::App& app, const FrameOptions& options);
 
     /// Reads and checks what has been parsed, and the file of a blend function. Throws InputError
-    /// where an argument cannot be used.
+    /// where an argument cannot be used, or changes nothing.
     void read(FrameOptions& options) const;
 
 private:
+    const CLI::App& app_;
     std::vector<std::string> scene_;
     std::string size_, alpha_, up_, blend_, samples_, resolve_, depth_scale_, view_, eyes_, time_,
         device_;
     bool depth_range_;
     bool opaque_floor_;
 };
+
+/// The text of --blend; empty where the scene decides.
+[[nodiscard]] std::string blend_text(const FrameOptions& options);
 
 /// Adds an option with a text to a command line; what it has is its default.
 void add_option(CLI::App& app, const char* name, std::string& value, const char* what,
@@ -93,12 +98,16 @@ struct MeshFile {
 [[nodiscard]] std::string title_of(const FrameOptions& options);
 
 /// The scene without a floor, from files or computed. Throws InputError where there is neither a
-/// file nor a scene of this name, or a file holds no mesh.
+/// file nor a scene of this name, a file holds no mesh, or the options ask for a time and nothing
+/// moves.
 [[nodiscard]] Scene make_scene(const FrameOptions& options);
 
 /// Adds the floor that the options ask for, where it is seen from above: from below it would hide
 /// the scene.
 void stand_on_floor(Scene& scene, const FrameOptions& options);
+
+/// Throws InputError, which begins with `option`, where time changes nothing in the scene.
+void require_motion(const Scene& scene, const FrameOptions& options, const std::string& option);
 
 /// What the eyes see.
 [[nodiscard]] std::vector<raster::View> make_views(const FrameOptions& options);

@@ -4,11 +4,15 @@
 #include <utility>
 #include <vector>
 
+#include <sys/resource.h>
+
 #include <cellist/cellist.hpp>
 
 #include "command_line.hpp"
 #include "comparison.hpp"
+#include "files.hpp"
 #include "frame.hpp"
+#include "frame_json.hpp"
 #include "image.hpp"
 #include "keeper.hpp"
 #include "options.hpp"
@@ -34,7 +38,7 @@ oit::PassTimes median_times(const std::vector<oit::PassTimes>& frames) {
 // Puts the frame at its moment: the i-th of `count`.
 void set_moment(oit::Frame& frame, const oit::Options& options, std::uint32_t i,
                 std::uint32_t count) {
-    if (!options.until && options.turn_degrees == 0) return;
+    if (!options.moves()) return;
     const double part = count > 1 ? static_cast<double>(i) / (count - 1) : 0;
     oit::FrameOptions moment = options;
     moment.time += part * (options.until.value_or(options.time) - options.time);
@@ -43,18 +47,36 @@ void set_moment(oit::Frame& frame, const oit::Options& options, std::uint32_t i,
     frame.views = oit::make_views(moment);
 }
 
-// Calls draw() for each moment. The median of its milliseconds.
-double draw_frames(oit::Frame& frame, const oit::Options& options,
-                   const std::function<double()>& draw) {
+// The most that the process has had in main memory.
+std::uint64_t peak_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return 1024 * static_cast<std::uint64_t>(usage.ru_maxrss);
+}
+
+void write_picture(const oit::Options& options, const oit::Frame& frame,
+                   const std::vector<cl_float4>& image, std::uint32_t number) {
+    support::write_image(options.out.of(number), oit::side_by_side(image, frame),
+                         oit::picture_width(frame), frame.height());
+}
+
+using Drawn = std::pair<double, const oit::Renderer*>;
+
+// Calls draw() for each moment, which says how many milliseconds it took and who has the image. Writes
+// the pictures of all frames where their name has a number.
+std::vector<double> draw_frames(oit::Frame& frame, const oit::Options& options,
+                                const std::function<Drawn()>& draw) {
     support::Progress progress("drawing");
     progress.update(0);
     std::vector<double> frames;
     for (std::uint32_t i = 0; i < options.frames; ++i) {
         progress.update(static_cast<double>(i) / options.frames);
         set_moment(frame, options, i, options.frames);
-        frames.push_back(draw());
+        const auto [milliseconds, renderer] = draw();
+        frames.push_back(milliseconds);
+        if (options.out.has_number()) write_picture(options, frame, renderer->image(), i + 1);
     }
-    return support::median(std::move(frames));
+    return frames;
 }
 
 // Draws the last moment again, pass by pass.
@@ -68,12 +90,24 @@ oit::PassTimes draw_passes(oit::Renderer& renderer, std::uint32_t count) {
     return median_times(passes);
 }
 
-oit::Comparison compare_with_reference(const oit::Frame& frame, const oit::Renderer& renderer,
-                                       const std::vector<cl_float4>& image) {
+oit::Reference reference_of(const oit::Frame& frame) {
     support::Progress progress("reference");
-    const oit::Reference reference =
-        oit::draw_reference(frame, {.progress = [&](double part) { progress.update(part); }});
-    return oit::compare(reference, image, renderer.method().depths());
+    return oit::draw_reference(frame, {.progress = [&](double part) { progress.update(part); }});
+}
+
+void write_reference(const oit::Options& options, const oit::Frame& frame,
+                     const std::vector<cl_float4>& image, const oit::Reference& reference) {
+    const int width = oit::picture_width(frame), height = frame.height();
+    const std::vector<cl_float4> wanted = oit::side_by_side(oit::linear_image(reference), frame);
+    if (!options.write_reference.empty())
+        support::write_image(options.write_reference, wanted, width, height);
+    const std::filesystem::path& path = options.write_difference;
+    if (path.empty()) return;
+    const std::vector<cl_float4> drawn = oit::side_by_side(image, frame);
+    if (support::has_floats(support::image_format(path)))
+        support::write_image(path, oit::linear_difference(drawn, wanted), width, height);
+    else
+        support::write_bytes_as_image(path, oit::shown_difference(drawn, wanted), width, height);
 }
 
 // With all layers; and with as many as were asked for, which tells what the device makes of these.
@@ -81,26 +115,30 @@ void compare_with_references(oit::Report& report, const oit::Frame& frame,
                              const oit::Renderer& renderer, const std::vector<cl_float4>& image) {
     oit::Frame all = frame;
     all.quality.layers.reset();
-    report.comparison = compare_with_reference(all, renderer, image);
+    const oit::Reference reference = reference_of(all);
+    report.comparison = oit::compare(reference, image, renderer.method().depths());
+    write_reference(report.options, frame, image, reference);
     if (frame.quality.layers)
-        report.nearest_comparison = compare_with_reference(frame, renderer, image);
+        report.nearest_comparison =
+            oit::compare(reference_of(frame), image, renderer.method().depths());
 }
 
 void draw_with_method(oit::Report& report, oit::Renderer& renderer, oit::Frame& frame) {
     renderer.warm_up();
-    const bool changes = report.options.until || report.options.turn_degrees != 0;
-    report.frame_ms = draw_frames(
-        frame, report.options, [&] { return changes ? renderer.draw_changed() : renderer.draw(); });
+    const bool changes = report.options.moves();
+    report.times.add(draw_frames(frame, report.options, [&] {
+        return Drawn(changes ? renderer.draw_changed() : renderer.draw(), &renderer);
+    }));
     report.passes = draw_passes(renderer, report.options.frames);
 }
 
 void draw_within_budget(oit::Report& report, oit::Keeper& keeper, oit::Frame& frame) {
     oit::KeptBudget& kept = report.kept;
-    report.frame_ms = draw_frames(frame, report.options, [&] {
+    report.times.add(draw_frames(frame, report.options, [&] {
         const oit::Keeper::Drawn drawn = keeper.draw();
         kept.add(drawn, frame.time, *report.options.budget);
-        return drawn.frame_ms;
-    });
+        return Drawn(drawn.frame_ms, &keeper.renderer());
+    }));
     report.passes = draw_passes(keeper.renderer(), report.options.frames);
     report.choice = keeper.choice();
     report.options.method = report.choice->setting.method->name;
@@ -121,22 +159,24 @@ void write(oit::Report& report, const oit::Frame& frame, const oit::Renderer& re
     report.colour_max = renderer.needs().colour_max;
     const std::vector<cl_float4> image = renderer.image();
     report.pixels_nan = oit::count_nan(image);
-    support::write_png(options.out, oit::side_by_side(image, frame), oit::picture_width(frame),
-                       frame.height());
+    if (!options.out.has_number()) write_picture(options, frame, image, 1);
     report.lengths = renderer.method().lengths();
     report.blends_slices = renderer.method().blends_slices();
     report.slices = renderer.method().slices();
     report.method_bytes = renderer.method().device_bytes();
     report.device_bytes = renderer.device_bytes();
     if (options.reference) compare_with_references(report, frame, renderer, image);
-    if (!options.json.empty()) oit::write_json(report, options.json);
-    oit::print(report, std::cout);
+    report.peak_bytes = peak_bytes();
+    if (!options.json.empty())
+        support::write_file(options.json, oit::dump(to_json(report), 2) + '\n');
+    oit::print(report, options.writes_to_stdout() ? std::cerr : std::cout);
 }
 
 // The exit code: 2 where no setting meets the budget.
 int run(const oit::Options& options) {
     const cellist::Device device = oit::choose_device(options);
     oit::Scene scene = oit::make_scene(options);
+    if (options.until) oit::require_motion(scene, options, "--until");
     oit::Report report;
     report.options = options;
     report.triangles = scene.triangles();

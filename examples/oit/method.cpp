@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "closest.hpp"
 #include "input_error.hpp"
 
 namespace oit {
@@ -25,13 +26,15 @@ MethodRegistration::MethodRegistration(const MethodInfo& info) {
 std::span<const MethodInfo> methods() { return table(); }
 
 const MethodInfo& method_named(std::string_view name) {
-    std::string names;
+    std::string list;
+    std::vector<std::string> names;
     for (const MethodInfo& info : table()) {
         if (info.name == name) return info;
-        names.append(names.empty() ? "" : ", ").append(info.name);
+        list.append(list.empty() ? "" : ", ").append(info.name);
+        names.emplace_back(info.name);
     }
-    throw support::InputError("no method is called '" + std::string(name) + "': there are " +
-                              names);
+    throw support::InputError("no method is called '" + std::string(name) + "'" +
+                              support::did_you_mean(name, names) + ": there are " + list);
 }
 
 std::uint32_t read_size_of(const MethodInfo& method, const std::string& text) {

@@ -1,5 +1,7 @@
 #include "options.hpp"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <string_view>
 #include <utility>
@@ -7,6 +9,8 @@
 #include <CLI/CLI.hpp>
 
 #include "command_line.hpp"
+#include "files.hpp"
+#include "image.hpp"
 #include "input_error.hpp"
 #include "number_text.hpp"
 #include "setting.hpp"
@@ -69,7 +73,67 @@ void read_memory(const std::string& text, Options& options) {
     refuse("--memory", text, "a whole number of bytes, KiB, MiB or GiB, such as 64MiB");
 }
 
+void check_outputs(const Options& options) {
+    const std::filesystem::path first = options.out.of(1);
+    const NamedFile outputs[] = {{"--out", first},
+                                 {"--write-reference", options.write_reference},
+                                 {"--write-difference", options.write_difference},
+                                 {"--json", options.json}};
+    check_outputs(options, outputs);
+    for (const std::filesystem::path& picture :
+         {first, options.write_reference, options.write_difference})
+        if (!picture.empty()) (void)support::image_format(picture);
+}
+
+// What does nothing beside the other options, or contradicts them.
+void refuse_idle_options(const CLI::App& app, const Options& options) {
+    const bool has_budget = options.budget.has_value(), one_frame = options.frames == 1;
+    const bool has_nodes = method_named(options.method).has_nodes;
+    const auto chosen = [&](const char* name) {
+        return support::IdleOption{
+            name, has_budget,
+            "--budget chooses what " + std::string(name) + " sets: leave one of them out"};
+    };
+    const auto not_compared = [&](const char* name) {
+        return support::IdleOption{
+            name, has_budget,
+            "--budget compares settings without " + std::string(name) + ": leave one of them out"};
+    };
+    const auto of_nodes = [&](const char* name) {
+        return support::IdleOption{
+            name, !has_nodes,
+            "--method " + options.method + " keeps no fragments: leave out " + name};
+    };
+    const auto of_frames = [&](const char* name) {
+        return support::IdleOption{name, one_frame,
+                                   std::string(name) + " needs several frames: --frames is 1"};
+    };
+    const support::IdleOption table[] = {
+        chosen("--method"),
+        chosen("--layers"),
+        chosen("--epsilon"),
+        chosen("--format"),
+        not_compared("--reduce"),
+        not_compared("--memory"),
+        {"--blend", has_budget && options.blend_function,
+         "--budget knows no bound of the errors of a function of your own: leave one of them out"},
+        {"--check-every", !has_budget, "--check-every is for --budget, which is not given"},
+        of_nodes("--epsilon"),
+        of_nodes("--format"),
+        of_frames("--until"),
+        of_frames("--turn"),
+        {"--check-every", !options.moves(),
+         "--check-every is for frames that change: add --until or --turn"},
+    };
+    support::refuse_idle_options(app, table);
+}
+
 }  // namespace
+
+bool Options::writes_to_stdout() const {
+    return std::ranges::any_of(std::array{out.of(1), write_reference, write_difference, json},
+                               support::is_standard_output);
+}
 
 Options parse_options(int count, const char* const* arguments) {
     Options options;
@@ -78,7 +142,8 @@ Options parse_options(int count, const char* const* arguments) {
     std::string reduce = std::to_string(options.quality.reduce), memory, budget,
                 check_every = std::to_string(options.check_every);
     std::string until, turn = shortest(options.turn_degrees),
-                       frames = std::to_string(options.frames), out = options.out.string(), json;
+                       frames = std::to_string(options.frames), out = options.out.path().string(),
+                       write_reference, write_difference, json;
     CLI::App app{"Draws a mesh or a scene with order-independent transparency.", "cellist-oit"};
     const auto add = [&](const char* name, std::string& value, const char* what, const char* type) {
         add_option(app, name, value, what, type);
@@ -102,7 +167,14 @@ Options parse_options(int count, const char* const* arguments) {
     add("--turn", turn, "turn the camera from the first frame to the last", "DEGREES");
     app.add_flag("--reference", options.reference,
                  "compare with a rendering in double precision on the CPU");
-    add("--out", out, "picture to write", "FILE.png");
+    add("--out", out,
+        "picture to write: .png, .jpg, .pfm or .exr, - for stdout; all frames as frame-%04d.png",
+        "FILE");
+    add("--write-reference", write_reference, "write the picture in double precision here", "FILE");
+    add("--write-difference", write_difference,
+        "write how far the picture is from that: 16 times in .png and .jpg, as it is in .pfm and "
+        ".exr",
+        "FILE");
     add("--json", json, "write the figures to this file", "FILE");
     add("--frames", frames, "timed frames, after those that warm up; times are medians", "N");
     app.footer(help_on_tables());
@@ -112,28 +184,14 @@ Options parse_options(int count, const char* const* arguments) {
         return options;
     }
     frame.read(options);
-    options.out = out;
+    options.arguments.assign(arguments + 1, arguments + count);
+    options.out = PictureName(out);
+    options.write_reference = write_reference;
+    options.write_difference = write_difference;
     options.json = json;
-    const NamedFile outputs[] = {{"--out", options.out}, {"--json", options.json}};
-    check_outputs(options, outputs);
-    if (budget.empty()) {
-        if (app.count("--check-every") > 0)
-            throw support::InputError("--check-every is for --budget, which is not given");
-    } else {
-        options.budget = parse_budget(budget);
-        for (const char* chosen : {"--method", "--layers", "--epsilon", "--format"})
-            if (app.count(chosen) > 0)
-                throw support::InputError("--budget chooses what " + std::string(chosen) +
-                                          " sets: leave one of them out");
-        for (const char* unknown : {"--reduce", "--memory"})
-            if (app.count(unknown) > 0)
-                throw support::InputError("--budget compares settings without " +
-                                          std::string(unknown) + ": leave one of them out");
-        if (options.blend_function)
-            throw support::InputError(
-                "--budget knows no bound of the errors of a function of your own: leave one of "
-                "them out");
-    }
+    check_outputs(options);
+    options.reference = options.reference || !write_reference.empty() || !write_difference.empty();
+    if (!budget.empty()) options.budget = parse_budget(budget);
     options.check_every = static_cast<std::uint32_t>(
         support::read_number("--check-every", check_every, 1, 1'000'000));
     if (!until.empty())
@@ -142,10 +200,6 @@ Options parse_options(int count, const char* const* arguments) {
     options.turn_degrees =
         read_between("--turn", turn, -1e6, 1e6, "degrees from -1000000 to 1000000");
     read_method(method, options);
-    for (const char* of_nodes : {"--epsilon", "--format"})
-        if (app.count(of_nodes) > 0 && !method_named(options.method).has_nodes)
-            throw support::InputError("--method " + options.method +
-                                      " keeps no fragments: leave out " + std::string(of_nodes));
     read_layers(layers, options);
     read_format(format, options);
     read_reduce(reduce, options);
@@ -154,9 +208,7 @@ Options parse_options(int count, const char* const* arguments) {
         static_cast<float>(read_between("--epsilon", epsilon, 0, 1, "a number from 0 to 1"));
     options.frames =
         static_cast<std::uint32_t>(support::read_number("--frames", frames, 1, 1'000'000));
-    for (const char* moves : {"--until", "--turn"})
-        if (app.count(moves) > 0 && options.frames == 1)
-            throw support::InputError(std::string(moves) + " needs several frames: --frames is 1");
+    refuse_idle_options(app, options);
     return options;
 }
 

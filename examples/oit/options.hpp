@@ -7,6 +7,7 @@
 
 #include "budget.hpp"
 #include "frame_options.hpp"
+#include "picture_name.hpp"
 
 namespace oit {
 
@@ -19,9 +20,16 @@ struct Options : FrameOptions {
     std::optional<double> until = {};  ///< the last frame's time; the first is at `time`
     double turn_degrees = 0;           ///< from the first frame to the last
     bool reference = false;
-    std::filesystem::path out = "oit.png";
+    PictureName out{"oit.png"};
+    std::filesystem::path write_reference = {};   ///< asks for `reference`, too
+    std::filesystem::path write_difference = {};  ///< asks for `reference`, too
     std::filesystem::path json = {};
     std::uint32_t frames = 5;
+    /// Frames show different moments.
+    [[nodiscard]] bool moves() const { return until || turn_degrees != 0; }
+    /// A file goes to stdout, so that the report goes to stderr.
+    [[nodiscard]] bool writes_to_stdout() const;
+
     bool help = false;
     std::string help_text = {};
 };

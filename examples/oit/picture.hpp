@@ -1,10 +1,13 @@
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include <cellist/opencl.hpp>
 
 #include "frame.hpp"
+#include "reference.hpp"
 
 namespace oit {
 
@@ -14,5 +17,18 @@ namespace oit {
 
 /// The width of all eyes side by side.
 [[nodiscard]] int picture_width(const Frame& frame);
+
+/// The reference's image in floats, eye by eye.
+[[nodiscard]] std::vector<cl_float4> linear_image(const Reference& reference);
+
+/// How many times as large as they are, differences are shown in 8 bits.
+inline constexpr int difference_factor = 16;
+
+/// How far two pictures are from each other, channel by channel, of linear colours.
+[[nodiscard]] std::vector<cl_float4> linear_difference(std::span<const cl_float4> a,
+                                                       std::span<const cl_float4> b);
+/// The same as people see it: of sRGB-encoded colours, difference_factor times, in bytes.
+[[nodiscard]] std::vector<std::uint8_t> shown_difference(std::span<const cl_float4> a,
+                                                         std::span<const cl_float4> b);
 
 }  // namespace oit

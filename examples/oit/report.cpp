@@ -1,23 +1,18 @@
 #include "report.hpp"
 
-#include <cmath>
-#include <fstream>
 #include <functional>
 #include <iomanip>
 #include <ostream>
 
 #include <nlohmann/json.hpp>
 
-#include "input_error.hpp"
+#include "files.hpp"
+#include "frame_json.hpp"
 #include "number_text.hpp"
 #include "setting.hpp"
 
 namespace oit {
 namespace {
-
-nlohmann::ordered_json finite_or_null(double value) {
-    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
 
 // What a blend that ends early leaves out, at most: each channel, linear. What is added on top of
 // what passes is not bounded by it.
@@ -107,14 +102,14 @@ void print_times(const Report& report, const Line& line) {
         line("raster + insert") << fixed(passes.raster_insert_ms, 2) << " ms\n";
         line("sort + blend") << fixed(passes.sort_blend_ms, 2) << " ms\n";
     }
-    line("frame") << fixed(report.frame_ms, 2) << " ms (median of " << report.options.frames
-                  << ")\n";
+    line("frame") << fixed(report.times.milliseconds, 2) << " ms (median of "
+                  << report.options.frames << ")\n";
 }
 
 nlohmann::ordered_json meshes_json(const Report& report) {
     auto meshes = nlohmann::ordered_json::array();
     for (const SceneMesh& mesh : report.meshes) {
-        meshes.push_back({{"file", std::filesystem::path(mesh.file).filename().string()},
+        meshes.push_back({{"file", support::text_of(std::filesystem::path(mesh.file).filename())},
                           {"alpha", nullptr},
                           {"triangles", mesh.triangles},
                           {"ignored_textures", mesh.ignored_textures}});
@@ -123,13 +118,27 @@ nlohmann::ordered_json meshes_json(const Report& report) {
     return meshes;
 }
 
-nlohmann::ordered_json times_json(const Report& report) {
+// Where the pictures are.
+void print_files(const Options& options, const Line& line) {
+    const auto file = [&](const std::string& name, const std::filesystem::path& path) {
+        if (path.empty()) return;
+        line(name) << (support::is_standard_output(path)
+                           ? "on stdout"
+                           : support::text_of(std::filesystem::absolute(path).lexically_normal()))
+                   << '\n';
+    };
+    file(options.out.has_number() ? "pictures" : "picture",
+         options.out.has_number() ? options.out.path() : options.out.of(1));
+    file("reference", options.write_reference);
+    file("difference", options.write_difference);
+}
+
+nlohmann::ordered_json passes_json(const Report& report) {
     const PassTimes& passes = report.passes;
     nlohmann::ordered_json json{{"transform", passes.transform_ms},
                                 {"raster_insert", nullptr},
                                 {"sort_blend", nullptr},
-                                {"slices", nullptr},
-                                {"frame", report.frame_ms}};
+                                {"slices", nullptr}};
     if (report.blends_slices) {
         json["slices"] = passes.raster_insert_ms;
     } else {
@@ -138,6 +147,34 @@ nlohmann::ordered_json times_json(const Report& report) {
     }
     return json;
 }
+
+nlohmann::ordered_json dropped_json(const support::MeshDrops& drops) {
+    return {{"nonfinite_vertices", drops.nonfinite_vertices},
+            {"nonfinite_triangles", drops.nonfinite_triangles},
+            {"out_of_range_triangles", drops.out_of_range_triangles},
+            {"degenerate_triangles", drops.degenerate_triangles},
+            {"unsplit_polygons", drops.unsplit_polygons},
+            {"points_and_lines", drops.points_and_lines},
+            {"bytes_after_end", drops.bytes_after_end}};
+}
+
+nlohmann::ordered_json reference_json(const Comparison& comparison) {
+    return {{"fragments", comparison.fragments},
+            {"pixels_ambiguous", comparison.pixels_ambiguous},
+            {"pixels_with_other_count", comparison.pixels_with_other_count},
+            {"max_depth_error", comparison.max_depth_error}};
+}
+
+nlohmann::ordered_json files_json(const Options& options) {
+    return {{"out", json_of(options.out.path())},
+            {"write_reference", json_of(options.write_reference)},
+            {"write_difference", json_of(options.write_difference)},
+            {"json", json_of(options.json)}};
+}
+
+// Of what is not there, for whoever reads the file as a table.
+constexpr const char* compared[] = {"psnr_db", "ssim", "max_abs_error", "pixels_over_1_255",
+                                    "pixels_explained"};
 
 }  // namespace
 
@@ -170,81 +207,56 @@ void print(const Report& report, std::ostream& out) {
                          << (report.meshes.size() > 1 ? "'" + mesh.file + "' " : "")
                          << "ends within a line: it may have been cut off\n";
     }
-    line("picture") << std::filesystem::absolute(options.out).lexically_normal().string() << '\n';
+    print_files(options, line);
 }
 
-void write_json(const Report& report, const std::filesystem::path& path) {
+nlohmann::ordered_json to_json(const Report& report) {
     const Options& options = report.options;
-    nlohmann::ordered_json json;
+    nlohmann::ordered_json json = json_of(options, "cellist-oit");
     json["device"] = report.device;
     json["driver"] = report.driver;
-    json["scene"] = title_of(options);
-    json["method"] = method_text({&method_named(options.method), options.quality});
-    json["width"] = options.width;
-    json["height"] = options.height;
-    json["alpha"] = options.alpha;
-    if (options.quality.layers)
-        json["layers"] = *options.quality.layers;
-    else
-        json["layers"] = "all";
-    json["view"] = {options.orbit.azimuth_degrees, options.orbit.elevation_degrees};
-    json["opaque_floor"] = options.opaque_floor;
+    json["until_s"] = nullptr;
+    if (options.until) json["until_s"] = *options.until;
+    json["turn_degrees"] = options.turn_degrees;
+    json["files"] = files_json(options);
+    json.update(json_of(Setting{&method_named(options.method), options.quality}));
+    json["reduce"] = options.quality.reduce;
+    json["memory_bytes"] = nullptr;
+    if (options.memory_bytes) json["memory_bytes"] = *options.memory_bytes;
     json["triangles"] = report.triangles;
-    json["dropped"] = {{"nonfinite_vertices", report.drops.nonfinite_vertices},
-                       {"nonfinite_triangles", report.drops.nonfinite_triangles},
-                       {"out_of_range_triangles", report.drops.out_of_range_triangles},
-                       {"degenerate_triangles", report.drops.degenerate_triangles},
-                       {"unsplit_polygons", report.drops.unsplit_polygons},
-                       {"points_and_lines", report.drops.points_and_lines},
-                       {"bytes_after_end", report.drops.bytes_after_end}};
+    json["dropped"] = dropped_json(report.drops);
     json["meshes"] = meshes_json(report);
-    json["fragments"] = nullptr;
+    for (const char* of_lists : {"fragments", "cells_nonempty", "longest_list", "node_bytes"})
+        json[of_lists] = nullptr;
     if (report.lengths) {
         json["fragments"] = report.lengths->total;
         json["cells_nonempty"] = report.lengths->nonempty_cells;
         json["longest_list"] = report.lengths->longest;
     }
-    json["samples"] = options.quality.samples;
-    json["node_bytes"] = nullptr;
     if (report.node_bytes) json["node_bytes"] = *report.node_bytes;
-    json["pool_bytes"] = report.method_bytes;
-    json["reduce"] = options.quality.reduce;
-    json["memory_bytes"] = nullptr;
-    if (options.memory_bytes) json["memory_bytes"] = *options.memory_bytes;
-    json["slices"] = report.slices;
-    json["pixels_nan"] = report.pixels_nan;
+    json["bytes"] = report.method_bytes;
     json["device_bytes"] = report.device_bytes;
-    json["frames"] = options.frames;
-    if (report.choice) json["budget"] = json_of(*report.choice, *options.budget, report.kept);
-    json["time_ms"] = times_json(report);
-    json["psnr_db"] = nullptr;
-    json["ssim"] = nullptr;
-    json["max_abs_error"] = nullptr;
+    json["peak_bytes"] = report.peak_bytes;
+    json["slices"] = report.slices;
+    json.update(times_json(report.times));
+    json["frames_ms"] = report.times.times;
+    json["passes_ms"] = passes_json(report);
+    json["check_every"] = nullptr;
+    json["budget"] = nullptr;
+    if (report.choice) {
+        json["check_every"] = options.check_every;
+        json["budget"] = json_of(*report.choice, *options.budget, report.kept);
+    }
+    for (const char* name : compared) json[name] = nullptr;
+    json["reference"] = nullptr;
     if (report.comparison) {
-        const Comparison& c = *report.comparison;
-        json["psnr_db"] = finite_or_null(c.psnr_db);
-        json["ssim"] = c.ssim;
-        json["max_abs_error"] = c.max_abs_error;
-        json["reference"] = {{"pixels_over_1_255", c.pixels_over},
-                             {"pixels_explained", c.pixels_explained},
-                             {"pixels_ambiguous", c.pixels_ambiguous},
-                             {"pixels_with_other_count", c.pixels_with_other_count},
-                             {"fragments", c.fragments},
-                             {"max_depth_error", c.max_depth_error}};
+        json.update(json_of(*report.comparison));
+        json["reference"] = reference_json(*report.comparison);
     }
+    json["pixels_nan"] = report.pixels_nan;
     json["nearest_layers"] = nullptr;
-    if (report.nearest_comparison) {
-        const Comparison& c = *report.nearest_comparison;
-        json["nearest_layers"] = {{"psnr_db", finite_or_null(c.psnr_db)},
-                                  {"ssim", c.ssim},
-                                  {"max_abs_error", c.max_abs_error},
-                                  {"pixels_over_1_255", c.pixels_over},
-                                  {"pixels_explained", c.pixels_explained}};
-    }
-    std::ofstream file(path);
-    file << json.dump(2) << '\n';
-    file.close();
-    if (!file) throw support::InputError("cannot write '" + path.string() + "'");
+    if (report.nearest_comparison) json["nearest_layers"] = json_of(*report.nearest_comparison);
+    return json;
 }
 
 }  // namespace oit

@@ -1,13 +1,15 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <iosfwd>
 #include <optional>
 #include <string>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "choice_report.hpp"
 #include "comparison.hpp"
+#include "measurement.hpp"
 #include "mesh.hpp"
 #include "options.hpp"
 #include "renderer.hpp"
@@ -26,11 +28,12 @@ struct Report {
     std::optional<std::uint64_t> node_bytes;  ///< of a fragment, without links, where it has a node
     std::uint64_t method_bytes = 0;           ///< what the method keeps on the device
     std::uint64_t device_bytes = 0;
-    bool blends_slices = false;  ///< as soon as each is built: the passes are not timed apart
-    std::uint32_t slices = 1;    ///< that the frame was built in
+    std::uint64_t peak_bytes = 0;  ///< of the process in main memory, at most until now
+    bool blends_slices = false;    ///< as soon as each is built: the passes are not timed apart
+    std::uint32_t slices = 1;      ///< that the frame was built in
     std::uint64_t pixels_nan = 0;
     float colour_max = 1;                  ///< brightest channel of a fragment, at most
-    double frame_ms = 0;                   ///< from clearing to the image on the device, median
+    Measurement times{.setting = {}};      ///< of frames: from clearing to the image on the device
     PassTimes passes;                      ///< medians
     std::optional<Comparison> comparison;  ///< with all layers
     std::optional<Comparison>
@@ -42,7 +45,7 @@ struct Report {
 /// One screen for people.
 void print(const Report& report, std::ostream& out);
 
-/// The same as JSON. Throws InputError where the file cannot be written.
-void write_json(const Report& report, const std::filesystem::path& path);
+/// The same and more, as docs/json.md says. What is infinite or was not measured is null.
+[[nodiscard]] nlohmann::ordered_json to_json(const Report& report);
 
 }  // namespace oit

@@ -15,6 +15,8 @@ struct SceneInfo {
     std::string_view summary;  ///< what it shows, in one line
     /// `alpha` is the opacity of its surfaces, where the scene does not say itself.
     Scene (*make)(float alpha);
+    bool takes_alpha =
+        true;  ///< else all surfaces have opacities of their own, and --alpha is refused
 };
 
 /// Puts a scene into the table: a constant in the scene's file.

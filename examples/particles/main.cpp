@@ -54,7 +54,7 @@ Options parse_options(int count, const char* const* arguments) {
     app.add_option("--cells", cells, "cells along the radius")
         ->type_name("1..4")
         ->capture_default_str();
-    app.add_option("--check", check, "points whose neighbours are found again on the CPU")
+    app.add_option("--check", check, "points, at most, whose neighbours are found again on the CPU")
         ->type_name("N|all")
         ->capture_default_str();
     app.add_option("--runs", runs, "timed runs, after one that is not; the fastest counts")
@@ -73,8 +73,8 @@ Options parse_options(int count, const char* const* arguments) {
     options.box = read_box(box);
     options.storage = support::read_storage("--storage", storage);
     options.cells_per_radius = static_cast<int>(read_number("--cells", cells, 1, 4));
-    options.check =
-        check == "all" ? options.points : read_number("--check", check, 0, options.points);
+    options.check = check == "all" ? options.points : read_number("--check", check, 0, 0xFFFFFFFF);
+    options.check = std::min(options.check, options.points);
     options.runs = read_number("--runs", runs, 1, 1'000'000);
     options.seed = static_cast<std::uint32_t>(read_number("--seed", seed, 0, 0xFFFFFFFF));
     return options;

@@ -2,16 +2,34 @@
 
 #include <charconv>
 #include <iostream>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
+#include "closest.hpp"
 #include "first_line.hpp"
 #include "input_error.hpp"
 
 namespace support {
+namespace {
+
+// For the first option that there is not.
+std::string meant_option(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& argument : app.remaining())
+        if (argument.starts_with("--"))
+            return did_you_mean(argument.substr(0, argument.find('=')), names);
+    return {};
+}
+
+}  // namespace
 
 std::optional<std::string> parse_command_line(CLI::App& app, int count,
                                               const char* const* arguments) {
+    app.set_version_flag("--version", app.get_name() + " " + std::string(version()),
+                         "print the version");
     try {
         app.parse(count, arguments);
         // Most likely a variable of the shell that is not set.
@@ -20,14 +38,25 @@ std::optional<std::string> parse_command_line(CLI::App& app, int count,
                 if (value.empty()) throw InputError(option->get_name() + ": the value is empty");
     } catch (const CLI::CallForHelp&) {
         return app.help();
+    } catch (const CLI::CallForVersion& version) {
+        return std::string(version.what()) + "\n";
+    } catch (const CLI::ExtrasError& error) {
+        throw InputError(first_line(error.what()) + meant_option(app) + " (see --help)");
     } catch (const CLI::ParseError& error) {
         throw InputError(first_line(error.what()) + " (see --help)");
     }
     return {};
 }
 
+std::string_view version() { return CELLIST_VERSION; }
+
 void refuse(const std::string& option, const std::string& text, const std::string& expected) {
     throw InputError(option + " " + text + ": expected " + expected);
+}
+
+void refuse_idle_options(const CLI::App& app, std::span<const IdleOption> table) {
+    for (const IdleOption& option : table)
+        if (option.applies && app.count(option.name) > 0) throw InputError(option.message);
 }
 
 std::uint64_t read_number(const std::string& option, const std::string& text, std::uint64_t least,
@@ -60,18 +89,6 @@ std::string to_string(cellist::Storage storage) {
             return "automatic";
     }
     return "unknown";
-}
-
-void check_output_path(const std::filesystem::path& path) {
-    const std::filesystem::path folder =
-        path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-    std::error_code error;
-    if (path.empty()) throw InputError("the output path is empty");
-    if (!std::filesystem::is_directory(folder, error))
-        throw InputError("cannot write '" + path.string() + "': the folder '" + folder.string() +
-                         "' does not exist");
-    if (std::filesystem::is_directory(path, error))
-        throw InputError("cannot write '" + path.string() + "': it is a folder");
 }
 
 void print_error(const std::string& name, const std::string& message) {

@@ -2,9 +2,10 @@
 
 #include <concepts>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include <cellist/options.hpp>
 
@@ -14,10 +15,13 @@ class App;
 
 namespace support {
 
-/// Reads a command line into the options of `app`. Returns the help text where it asks for it.
-/// Throws InputError, with one line, where it cannot be read.
+/// Reads a command line into the options of `app`, and into --version. Returns what is to be printed
+/// where it asks for help or the version. Throws InputError, with one line, where it cannot be read.
 [[nodiscard]] std::optional<std::string> parse_command_line(CLI::App& app, int count,
                                                             const char* const* arguments);
+
+/// Of the programs, as --version prints it: "0.1.0".
+[[nodiscard]] std::string_view version();
 
 /// The text of an option as a whole number. Throws InputError unless least <= number <= most.
 [[nodiscard]] std::uint64_t read_number(const std::string& option, const std::string& text,
@@ -31,15 +35,22 @@ namespace support {
 [[noreturn]] void refuse(const std::string& option, const std::string& text,
                          const std::string& expected);
 
-/// Throws InputError unless a file can be written there: the folder exists and the path is not a folder
-/// itself.
-void check_output_path(const std::filesystem::path& path);
+/// An option that changes nothing, or contradicts another one, where `applies` is true.
+struct IdleOption {
+    const char* name;
+    bool applies;
+    std::string message;
+};
 
-/// What main of an example does: prints errors in one line, behind the program's name. The exit
-/// code is 0, or 1 where `program` threw or found a difference and returned false.
+/// Throws InputError with the message of the first of these that was given and applies.
+void refuse_idle_options(const CLI::App& app, std::span<const IdleOption> table);
+
+/// What main of an example does: prints errors in one line, after the program's name. The exit code
+/// is 0, or 1 where `program` threw or found a difference and returned false, or where not all that it
+/// printed could be written.
 int run_program(const std::string& name, std::predicate auto&& program);
 
-/// Prints `message` behind the program's name, without what follows its first line.
+/// Prints `message` after the program's name, without what follows its first line.
 void print_error(const std::string& name, const std::string& message);
 
 }  // namespace support
@@ -48,9 +59,16 @@ void print_error(const std::string& name, const std::string& message);
 
 #include <exception>
 
+#include "files.hpp"
+
 int support::run_program(const std::string& name, std::predicate auto&& program) {
+    prepare_output();
     try {
-        return program() ? 0 : 1;
+        const bool is_good = program();
+        flush_standard_output();
+        return is_good ? 0 : 1;
+    } catch (const OutputClosed&) {
+        return 1;
     } catch (const std::exception& error) {
         print_error(name, error.what());
         return 1;

@@ -21,9 +21,38 @@ namespace support {
 /// The bytes of a PNG file with an image of 3 bytes a pixel, row by row from the top.
 [[nodiscard]] std::string png(std::span<const std::uint8_t> bytes, int width, int height);
 
-/// Writes linear RGB pixels (the fourth component is not used), row by row from the top, as an
-/// 8-bit sRGB PNG. Throws InputError where the file cannot be written.
-void write_png(const std::filesystem::path& path, std::span<const cl_float4> pixels, int width,
-               int height);
+/// The bytes of an OpenEXR file with red, green and blue as 32-bit floats, one part of uncompressed
+/// scan lines: "Technical Introduction to OpenEXR" and "OpenEXR File Layout". Rows from the top.
+[[nodiscard]] std::string exr(std::span<const cl_float4> pixels, int width, int height);
+
+/// The bytes of a PFM file ("Portable FloatMap", Debevec): red, green and blue as 32-bit floats, little
+/// endian. Rows from the top.
+[[nodiscard]] std::string pfm(std::span<const cl_float4> pixels, int width, int height);
+
+/// What an image file holds.
+enum class ImageFormat {
+    png,   ///< 8-bit sRGB
+    jpeg,  ///< 8-bit sRGB, quality 95
+    pfm,   ///< linear floats
+    exr,   ///< linear floats
+};
+
+/// The format that a file's name stands for: .png, .jpg or .jpeg, .pfm, .exr, in any case of letters;
+/// PNG for stdout and for what is no regular file. Throws InputError, with these, at any other name.
+[[nodiscard]] ImageFormat image_format(const std::filesystem::path& path);
+
+[[nodiscard]] inline bool has_floats(ImageFormat format) {
+    return format == ImageFormat::pfm || format == ImageFormat::exr;
+}
+
+/// Writes an image of 3 bytes a pixel as PNG or JPEG, as the file's name says. Throws as write_file()
+/// does.
+void write_bytes_as_image(const std::filesystem::path& path, std::span<const std::uint8_t> bytes,
+                          int width, int height);
+
+/// Writes linear RGB pixels (the fourth component is not used), row by row from the top, in the format
+/// of the file's name. Throws as write_file() does.
+void write_image(const std::filesystem::path& path, std::span<const cl_float4> pixels, int width,
+                 int height);
 
 }  // namespace support

@@ -13,7 +13,9 @@
 #include <cellist/cellist.hpp>
 
 #include "command_line.hpp"
+#include "files.hpp"
 #include "grid/triangle_grid.hpp"
+#include "image.hpp"
 #include "mesh.hpp"
 #include "picture.hpp"
 #include "queries.hpp"
@@ -54,11 +56,14 @@ Options parse_options(int count, const char* const* arguments) {
     app.add_option("--segments", segments, "number of segments")
         ->type_name("N")
         ->capture_default_str();
-    app.add_option("--check", check, "segments that are held against every triangle on the CPU")
+    app.add_option("--check", check,
+                   "segments, at most, that are held against every triangle on the CPU")
         ->type_name("N|all")
         ->capture_default_str();
-    app.add_option("--out", out, "draw the mesh with shadows and write the picture here")
-        ->type_name("FILE.png");
+    app.add_option(
+           "--out", out,
+           "draw the mesh with shadows and write the picture here: .png, .jpg, .pfm or .exr")
+        ->type_name("FILE");
     app.add_option("--seed", seed, "of the random numbers")->type_name("N")->capture_default_str();
     app.add_option("--device", options.device,
                    "index or part of the name of the device; else CELLIST_DEVICE, a GPU, or the "
@@ -70,6 +75,10 @@ Options parse_options(int count, const char* const* arguments) {
     }
     options.mesh = mesh;
     options.out = out;
+    if (!out.empty()) {
+        support::check_output_path(out);
+        (void)support::image_format(out);
+    }
     options.grid = static_cast<int>(read_number("--grid", grid, 1, GRID_EXTENT_MAX));
     options.storage = support::read_storage("--storage", storage);
     options.segments = read_number("--segments", segments, 0, 100'000'000);
@@ -83,7 +92,8 @@ Options parse_options(int count, const char* const* arguments) {
 // Compares evenly spread segments with the reference, prints the result, and returns whether all
 // are equal.
 bool check(const std::vector<triangle_grid::Segment>& segments, const std::vector<cl_uint>& hits,
-           const std::vector<grid::GridTriangle>& triangles, std::size_t sample) {
+           const std::vector<grid::GridTriangle>& triangles, std::size_t sample,
+           std::FILE* screen) {
     using triangle_grid::kinds;
     std::array<std::size_t, kinds.size()> asked{}, blocked{}, different{};
     // One more than a multiple of the kinds, so that every kind has its turn.
@@ -99,15 +109,15 @@ bool check(const std::vector<triangle_grid::Segment>& segments, const std::vecto
     }
     bool equal = true;
     for (std::size_t kind = 0; kind < kinds.size() && sample > 0; ++kind) {
-        std::printf("check       %-29s %5zu of %5zu meet a triangle, %zu differ\n",
-                    std::string(kinds[kind]).c_str(), blocked[kind], asked[kind], different[kind]);
+        std::fprintf(screen, "check       %-29s %5zu of %5zu meet a triangle, %zu differ\n",
+                     std::string(kinds[kind]).c_str(), blocked[kind], asked[kind], different[kind]);
         equal = equal && different[kind] == 0;
     }
     return equal;
 }
 
 bool run(const Options& options) {
-    if (!options.out.empty()) support::check_output_path(options.out);
+    std::FILE* const screen = support::is_standard_output(options.out) ? stderr : stdout;
     const cellist::Device device = options.device.empty() ? cellist::Device::choose()
                                                           : cellist::Device::choose(options.device);
     support::Mesh mesh =
@@ -128,30 +138,33 @@ bool run(const Options& options) {
     const double ask_ms = support::measure_ms(device, [&] { queries.ask(); });
     const std::vector<cl_uint> hits = queries.hits();
 
-    std::printf("device      %s\n", device.info().name.c_str());
-    std::printf("triangles   %zu, in %s cells, %s: %llu entries, %.1f MB\n", triangles.size(),
-                grid.entries().shape().to_string().c_str(),
-                support::to_string(options.storage).c_str(),
-                static_cast<unsigned long long>(report.stored),
-                static_cast<double>(grid.entries().pool_bytes()) * 1e-6);
+    std::fprintf(screen, "device      %s\n", device.info().name.c_str());
+    std::fprintf(screen, "triangles   %zu, in %s cells, %s: %llu entries, %.1f MB\n",
+                 triangles.size(), grid.entries().shape().to_string().c_str(),
+                 support::to_string(options.storage).c_str(),
+                 static_cast<unsigned long long>(report.stored),
+                 static_cast<double>(grid.entries().pool_bytes()) * 1e-6);
     if (!options.mesh.empty())
-        std::printf("mesh        triangles: %zu%s\n", mesh.triangles.size(),
-                    support::dropped_text(mesh.drops).c_str());
-    for (const std::string& note : mesh.notes) std::printf("note        %s\n", note.c_str());
+        std::fprintf(screen, "mesh        triangles: %zu%s\n", mesh.triangles.size(),
+                     support::dropped_text(mesh.drops).c_str());
+    for (const std::string& note : mesh.notes)
+        std::fprintf(screen, "note        %s\n", note.c_str());
     if (mesh.ends_within_line)
-        std::printf("note        the mesh file ends within a line: it may have been cut off\n");
-    std::printf("segments    %zu, %lld meet a triangle\n", segments.size(),
-                static_cast<long long>(std::count(hits.begin(), hits.end(), cl_uint{1})));
-    std::printf("time        build %.1f ms, segments %.1f ms (%.2f million/s)\n", build_ms, ask_ms,
-                static_cast<double>(segments.size()) / ask_ms * 1e-3);
+        std::fprintf(screen,
+                     "note        the mesh file ends within a line: it may have been cut off\n");
+    std::fprintf(screen, "segments    %zu, %lld meet a triangle\n", segments.size(),
+                 static_cast<long long>(std::count(hits.begin(), hits.end(), cl_uint{1})));
+    std::fprintf(screen, "time        build %.1f ms, segments %.1f ms (%.2f million/s)\n", build_ms,
+                 ask_ms, static_cast<double>(segments.size()) / ask_ms * 1e-3);
     if (!options.out.empty()) {
         const double ms = triangle_grid::draw_picture(device, grid, mesh, {.out = options.out});
-        std::printf("picture     %s, %.0f ms\n", options.out.string().c_str(), ms);
+        std::fprintf(screen, "picture     %s, %.0f ms\n", support::text_of(options.out).c_str(),
+                     ms);
     }
     const bool accounted =
         report.dropped == 0 && report.rejected == 0 && report.stored >= triangles.size();
-    if (!accounted) std::printf("check       entries are MISSING\n");
-    return check(segments, hits, triangles, options.check) && accounted;
+    if (!accounted) std::fprintf(screen, "check       entries are MISSING\n");
+    return check(segments, hits, triangles, options.check, screen) && accounted;
 }
 
 }  // namespace

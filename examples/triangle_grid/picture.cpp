@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "camera.hpp"
-#include "command_line.hpp"
 #include "image.hpp"
 #include "stopwatch.hpp"
 #include "triangle_grid_kernels.hpp"
@@ -58,7 +57,6 @@ std::vector<cl_float4> corner_normals(const support::Mesh& mesh) {
 
 double draw_picture(const cellist::Device& device, const grid::TriangleGrid& triangles,
                     const support::Mesh& mesh, const PictureOptions& options) {
-    support::check_output_path(options.out);
     const Camera camera = make_camera(mesh, options);
     const cellist::Buffer<cl_float4> normals(device, corner_normals(mesh));
     const auto pixels =
@@ -75,7 +73,7 @@ double draw_picture(const cellist::Device& device, const grid::TriangleGrid& tri
         draw.run(range, triangles.entries(), triangles.cells(), triangles.triangles(), normals,
                  camera, image);
     });
-    support::write_png(options.out, image.download(), options.width, options.height);
+    support::write_image(options.out, image.download(), options.width, options.height);
     return ms;
 }
 

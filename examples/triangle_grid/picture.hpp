@@ -18,8 +18,7 @@ struct PictureOptions {
 
 /// Draws the mesh, which fits into the unit sphere, on a floor: a picture of what the queries are
 /// for. Triangle i of the grid is triangle i of the mesh; the grid may have more, which are not
-/// seen. Returns the milliseconds that drawing took. Blocks. Throws InputError where the file
-/// cannot be written.
+/// seen. Returns the milliseconds that drawing took. Blocks. Throws as write_image() does.
 double draw_picture(const cellist::Device& device, const grid::TriangleGrid& triangles,
                     const support::Mesh& mesh, const PictureOptions& options);
 

@@ -1,5 +1,6 @@
 # Fails unless a program refuses its arguments: exit code 1, nothing on stdout, and one line on
 # stderr that names the program and the last argument.
+separate_arguments(arguments UNIX_COMMAND "${arguments}")
 execute_process(COMMAND "${program}" ${arguments}
     RESULT_VARIABLE code OUTPUT_VARIABLE out ERROR_VARIABLE error)
 list(GET arguments -1 named)

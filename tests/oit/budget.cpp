@@ -55,6 +55,11 @@ void require_times_against_chosen(const oit::Choice& choice) {
 TEST_CASE("a budget is decibels, a fraction or a number") {
     CHECK(oit::parse_budget("40dB").kind == oit::Budget::Kind::psnr);
     CHECK(oit::parse_budget("40dB").limit == 40);
+    for (const char* text : {"40db", "40DB", "40 dB", "40  db"}) {
+        INFO(text);
+        CHECK(oit::parse_budget(text).limit == 40);
+        CHECK(oit::parse_budget(text).kind == oit::Budget::Kind::psnr);
+    }
     CHECK(oit::parse_budget("1/255").kind == oit::Budget::Kind::largest);
     CHECK(oit::parse_budget("1/255").limit == 1.0 / 255);
     CHECK(oit::parse_budget("0.004").limit == 0.004);

@@ -11,6 +11,9 @@ Program oit_program() { return Program(CELLIST_OIT_PROGRAM); }
 
 TEST_CASE("bad arguments are refused") {
     const Program program = oit_program();
+    (void)program.folder().write("zero.cl", std::string("a\0b", 3));
+    (void)program.folder().write("empty.cl", "");
+    (void)program.folder().write("large.cl", std::string((1 << 20) + 1, ' '));
     for (const auto& [arguments, named] : {
              std::pair<std::string, std::string>{"--size 0x0", "0x0"},
              {"--size 100000x100000", "100000x100000"},
@@ -48,6 +51,22 @@ TEST_CASE("bad arguments are refused") {
              {"--out x.png --json ./x.png", "same file"},
              {"--out knot.obj", "the mesh"},
              {"--resolve sample", "--samples"},
+             {"--resolve pixel", "--samples"},
+             {"--time 1", "nothing moves"},
+             {"--alpha 0.5 --blend absorb", "absorb by their depth"},
+             {"--until 1", "nothing moves"},
+             {"--budget 40dB --check-every 2", "--until or --turn"},
+             {"--out a.gif", ".exr"},
+             {"--out a", ".png"},
+             {"--write-reference a.txt", ".jpg"},
+             {"--out %s.png", "%04d"},
+             {"--out %d-%d.png", "once"},
+             {"--write-reference oit.png", "same file"},
+             {"--out f-%02d.png --json ./f-01.png", "same file"},
+             {"--blend /dev/zero", "regular file"},
+             {"--blend zero.cl", "byte of 0"},
+             {"--blend large.cl", "1048576 bytes"},
+             {"--blend empty.cl", "empty"},
              {"--check-every 2", "--budget"},
              {"--turn 90 --frames 1", "--frames is 1"},
              {"--until 1 --frames 1", "--frames is 1"},
@@ -56,8 +75,11 @@ TEST_CASE("bad arguments are refused") {
              {"--stereo -1", "-1"},
              {"--time inf", "inf"},
              {"--blend nosuch.cl", "nosuch.cl"},
-             {"--blend .", "function"},
+             {"--blend .", "folder"},
              {"--method nosuch", "weighted"},
+             {"--method linkde", "did you mean 'linked'?"},
+             {"--sise 3x3", "did you mean '--size'?"},
+             {"--budget 40dBs", "such as 40dB"},
              {"--method adaptive:7", "8, 16"},
              {"--method linked:8", "none"},
              {"--method adaptive:", "8, 16"},
@@ -85,7 +107,10 @@ TEST_CASE("bad arguments are refused") {
         program.require_refused("knot.obj " + arguments, named);
     program.require_refused("", "mesh");
     program.require_refused("nosuch.obj", "nosuch.obj");
-    program.require_refused("gearwork", "--help lists the scenes");
+    program.require_refused("gearwork", "(did you mean 'gearworks'?); --help lists the scenes");
+    program.require_refused("extreme-layers --alpha 0.5", "opacities of their own");
+    program.require_refused("/dev/null", "not a regular file");
+    program.require_refused("fifo", "not a regular file", "mkfifo fifo;");
     program.require_refused(".", "folder");
 }
 

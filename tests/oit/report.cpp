@@ -21,8 +21,8 @@ TEST_CASE("the picture, the screen and the JSON agree, and pictures are equal in
     const std::string json = read_file(program.folder() / "a.json");
     for (const std::string key :
          {"scene", "method", "device", "driver", "width", "height", "triangles", "fragments",
-          "cells_nonempty", "longest_list", "pool_bytes", "time_ms", "transform", "raster_insert",
-          "sort_blend", "frame", "psnr_db", "max_abs_error"}) {
+          "cells_nonempty", "longest_list", "bytes", "passes_ms", "transform", "raster_insert",
+          "sort_blend", "ms", "frames_ms", "psnr_db", "max_abs_error"}) {
         INFO(key);
         CHECK(contains(json, "\"" + key + "\""));
     }

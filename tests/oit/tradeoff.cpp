@@ -5,6 +5,7 @@
 
 #include "camera.hpp"
 #include "figures.hpp"
+#include "frame_json.hpp"
 #include "oit/support/program.hpp"
 #include "page.hpp"
 

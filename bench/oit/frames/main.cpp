@@ -1,14 +1,13 @@
 // Speed and accuracy of transparency on the device that CELLIST_DEVICE names: the figures that
 // docs/transparency.md has.
 
-#include <fstream>
 #include <iostream>
 #include <thread>
 
 #include <CLI/CLI.hpp>
 
 #include "command_line.hpp"
-#include "input_error.hpp"
+#include "files.hpp"
 #include "number_text.hpp"
 #include "oit/frames/run.hpp"
 
@@ -74,10 +73,7 @@ void run(const Options& options) {
         std::cout << results.dump(1) << '\n';
         return;
     }
-    std::ofstream file(options.json, std::ios::binary);
-    file << results.dump(1) << '\n';
-    file.close();
-    if (!file) throw support::InputError("cannot write '" + options.json.string() + "'");
+    support::write_file(options.json, results.dump(1) + '\n');
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #include "cases.hpp"
 
+#include <iterator>
 #include <sstream>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -13,34 +13,36 @@ namespace oit {
 namespace {
 
 // Ten scenes and views, three budgets each. What each stands for:
-constexpr GridView views[]{
+const GridView views[]{
     // many pixels without layers, and few layers
-    {"teapot", "teapot.obj --view 25,8", {"30dB", "40dB", "1/255"}},
+    {"teapot", "teapot.obj", "--view 25,8", {"30dB", "40dB", "1/255"}},
     // opaque surfaces in between; little light passes
     {"teapot-floor",
-     "teapot.obj --view 160,35 --alpha 0.7 --opaque-floor",
+     "teapot.obj",
+     "--view 160,35 --alpha 0.7 --opaque-floor",
      {"35dB", "55dB", "4/255"}},
     // small triangles
-    {"dragon", "dragon.ply --view 25,8", {"30dB", "40dB", "1/255"}},
+    {"dragon", "dragon.ply", "--view 25,8", {"30dB", "40dB", "1/255"}},
     // coverage of samples
     {"dragon-samples",
-     "dragon.ply --view -100,20 --alpha 0.6 --samples 4",
+     "dragon.ply",
+     "--view -100,20 --alpha 0.6 --samples 4",
      {"35dB", "45dB", "2/255"}},
     // many layers, instances and opaque surfaces
-    {"gearworks", "gearworks --view 25,8", {"30dB", "40dB", "1/255"}},
-    {"gearworks-turned", "gearworks --view 120,40 --time 1.5", {"35dB", "55dB", "4/255"}},
+    {"gearworks", "gearworks", "--view 25,8", {"30dB", "40dB", "1/255"}},
+    {"gearworks-turned", "gearworks", "--view 120,40 --time 1.5", {"35dB", "55dB", "4/255"}},
     // each vertex with its own opacity
-    {"smoke", "smoke --view 25,8", {"30dB", "40dB", "1/255"}},
+    {"smoke", "smoke", "--view 25,8", {"30dB", "40dB", "1/255"}},
     // media, for which the survey knows no bounds of packed formats
-    {"smoke-absorb", "smoke --blend absorb --view 80,-10", {"35dB", "50dB", "1/255"}},
+    {"smoke-absorb", "smoke", "--blend absorb --view 80,-10", {"35dB", "50dB", "1/255"}},
     // instances of one mesh, for two eyes
-    {"rings", "rings --view 40,30 --stereo 0.1", {"30dB", "45dB", "1/255"}},
+    {"rings", "rings", "--view 40,30 --stereo 0.1", {"30dB", "45dB", "1/255"}},
     // depths do not tell the order; and a budget that no picture of floats can keep
-    {"coplanar", "extreme-coplanar --view 0,0", {"30dB", "1/255", "199dB"}},
+    {"coplanar", "extreme-coplanar", "--view 0,0", {"30dB", "1/255", "199dB"}},
 };
 
-std::vector<std::string> words(std::string_view text) {
-    std::istringstream in{std::string(text)};
+std::vector<std::string> words(const std::string& text) {
+    std::istringstream in(text);
     std::vector<std::string> result;
     for (std::string word; in >> word;) result.push_back(word);
     return result;
@@ -48,12 +50,20 @@ std::vector<std::string> words(std::string_view text) {
 
 }  // namespace
 
-std::span<const GridView> grid_views() { return views; }
+std::vector<GridView> grid_views(const std::filesystem::path& meshes) {
+    std::vector<GridView> all(std::begin(views), std::end(views));
+    for (GridView& view : all)
+        if (is_of_mesh(view)) view.scene = (meshes / view.scene).string();
+    return all;
+}
 
-FrameOptions frame_options(const GridView& view, const std::filesystem::path& meshes) {
-    std::vector<std::string> arguments = words(view.arguments);
-    if (is_of_mesh(view)) arguments.front() = (meshes / arguments.front()).string();
-    std::vector<const char*> pointers{"cellist-oit"};
+GridView view_of_mesh(const std::filesystem::path& mesh) {
+    return {mesh.stem().string(), mesh.string(), "--view 25,8", {"30dB", "40dB", "1/255"}};
+}
+
+FrameOptions frame_options(const GridView& view) {
+    std::vector<const char*> pointers{"cellist-oit", view.scene.c_str()};
+    const std::vector<std::string> arguments = words(view.arguments);
     for (const std::string& argument : arguments) pointers.push_back(argument.c_str());
     FrameOptions options;
     CLI::App app;
@@ -63,8 +73,6 @@ FrameOptions frame_options(const GridView& view, const std::filesystem::path& me
     return options;
 }
 
-bool is_of_mesh(const GridView& view) {
-    return find_scene(words(view.arguments).front()) == nullptr;
-}
+bool is_of_mesh(const GridView& view) { return find_scene(view.scene) == nullptr; }
 
 }  // namespace oit

@@ -2,9 +2,8 @@
 
 #include <array>
 #include <filesystem>
-#include <span>
 #include <string>
-#include <string_view>
+#include <vector>
 
 #include "frame_options.hpp"
 
@@ -12,15 +11,20 @@ namespace oit {
 
 /// A scene as it is seen from somewhere, and the budgets within which it is drawn: a case each.
 struct GridView {
-    std::string_view name;
-    std::string_view arguments;  ///< of cellist-oit; meshes are named without their folder
-    std::array<std::string_view, 3> budgets;
+    std::string name;
+    std::string scene;      ///< its name, or a mesh file
+    std::string arguments;  ///< further ones of cellist-oit
+    std::array<std::string, 3> budgets;
 };
 
-[[nodiscard]] std::span<const GridView> grid_views();
+/// The ten views of the grid, with the meshes in a folder.
+[[nodiscard]] std::vector<GridView> grid_views(const std::filesystem::path& meshes);
 
-/// Reads the arguments. Meshes are files in `meshes`. Throws InputError where they cannot be used.
-[[nodiscard]] FrameOptions frame_options(const GridView& view, const std::filesystem::path& meshes);
+/// A view of any mesh.
+[[nodiscard]] GridView view_of_mesh(const std::filesystem::path& mesh);
+
+/// Reads the arguments. Throws InputError where they cannot be used.
+[[nodiscard]] FrameOptions frame_options(const GridView& view);
 
 /// Whether it is drawn from a file.
 [[nodiscard]] bool is_of_mesh(const GridView& view);

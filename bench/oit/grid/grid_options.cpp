@@ -3,7 +3,9 @@
 #include <CLI/CLI.hpp>
 
 #include "command_line.hpp"
+#include "files.hpp"
 #include "frame_options.hpp"
+#include "input_error.hpp"
 #include "number_text.hpp"
 
 namespace oit {
@@ -21,7 +23,8 @@ GridOptions parse_grid_options(int count, const char* const* arguments) {
                 frames = std::to_string(options.frames), cost = shortest(options.cost), meshes,
                 json;
     CLI::App app{
-        "Draws ten scenes and views within three budgets each, as cellist-oit --budget does, and "
+        "Draws ten scenes and views, or the meshes that are given, within three budgets each, as "
+        "cellist-oit --budget does, and "
         "looks for the cheapest setting that keeps the budget among all there are, by drawing all "
         "of them and comparing them with a rendering in double precision.\n"
         "A case is met if what --budget chose keeps the budget against that rendering, and costs "
@@ -34,6 +37,9 @@ GridOptions parse_grid_options(int count, const char* const* arguments) {
     const auto add = [&](const char* name, std::string& value, const char* what, const char* type) {
         add_option(app, name, value, what, type);
     };
+    std::vector<std::string> files;
+    app.add_option("mesh", files, "meshes to draw, instead of the ten scenes and views")
+        ->type_name("MESH...");
     add("--meshes", meshes, "has teapot.obj and dragon.ply, whose cases are left out without it",
         "DIR");
     add("--size", size, "image size in pixels", "WxH");
@@ -49,11 +55,20 @@ GridOptions parse_grid_options(int count, const char* const* arguments) {
         options.help_text = *help;
         return options;
     }
+    const support::IdleOption idle[] = {
+        {"--meshes", !files.empty(), "--meshes is for the ten scenes and views: leave it out"}};
+    support::refuse_idle_options(app, idle);
     const std::size_t x = size.find('x');
     if (x == std::string::npos)
         support::refuse("--size", size, "WIDTHxHEIGHT in pixels, such as 320x180");
     options.width = read_side(size.substr(0, x));
     options.height = read_side(size.substr(x + 1));
+    for (const std::string& file : files) {
+        std::error_code error;
+        if (!std::filesystem::is_regular_file(file, error))
+            throw support::InputError("'" + support::text_of(file) + "' is no file");
+        options.files.emplace_back(file);
+    }
     options.meshes = meshes;
     options.frames =
         static_cast<std::uint32_t>(support::read_number("--frames", frames, 1, 10'000));

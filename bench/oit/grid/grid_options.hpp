@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace oit {
 
@@ -10,6 +11,7 @@ namespace oit {
 struct GridOptions {
     int width = 320;
     int height = 180;
+    std::vector<std::filesystem::path> files = {};  ///< meshes to draw instead of the grid
     std::filesystem::path meshes = {};
     std::string filter = {};   ///< in the names of the views to draw
     std::uint32_t frames = 7;  ///< of each setting that are timed, at least

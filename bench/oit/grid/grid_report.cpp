@@ -86,11 +86,10 @@ ordered_json to_json(const std::vector<GridResult>& results, const GridOptions& 
     for (const GridResult& result : results) {
         for (const GridCase& grid_case : result.cases)
             json["cases"].push_back(to_json(grid_case, options.cost));
-        ordered_json view{{"name", result.view->name},
-                          {"arguments", result.view->arguments},
-                          {"fragments", result.fragments},
-                          {"most_layers", result.most_layers},
-                          {"pixels_ambiguous", result.pixels_ambiguous}};
+        ordered_json view{
+            {"name", result.view->name},           {"scene", result.view->scene},
+            {"arguments", result.view->arguments}, {"fragments", result.fragments},
+            {"most_layers", result.most_layers},   {"pixels_ambiguous", result.pixels_ambiguous}};
         view["settings"] = ordered_json::array();
         for (const Trial& trial : result.trials) view["settings"].push_back(to_json(trial));
         json["views"].push_back(std::move(view));

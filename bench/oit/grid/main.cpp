@@ -1,14 +1,17 @@
 // Does --budget choose well? Against all settings there are, on ten scenes and views.
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include <cellist/cellist.hpp>
 
 #include "cases.hpp"
 #include "command_line.hpp"
-#include "figures.hpp"
+#include "files.hpp"
+#include "frame_json.hpp"
 #include "grid_options.hpp"
 #include "grid_report.hpp"
 #include "input_error.hpp"
@@ -28,8 +31,8 @@ void time_both(oit::Search& search, const oit::Trial& chosen, const oit::Trial& 
 }
 
 oit::GridCase run_case(const cellist::Device& device, const oit::Frame& frame, oit::Search& search,
-                       const oit::GridView& view, std::string_view budget_text) {
-    oit::GridCase result{.name = std::string(view.name) + " " + std::string(budget_text),
+                       const oit::GridView& view, const std::string& budget_text) {
+    oit::GridCase result{.name = view.name + " " + budget_text,
                          .budget = oit::parse_budget(budget_text)};
     // As cellist-oit does.
     const oit::Keeper keeper(device, frame, result.budget);
@@ -48,7 +51,7 @@ oit::GridCase run_case(const cellist::Device& device, const oit::Frame& frame, o
 
 oit::GridResult run_view(const cellist::Device& device, const oit::GridView& view,
                          const oit::GridOptions& options) {
-    oit::FrameOptions drawn = oit::frame_options(view, options.meshes);
+    oit::FrameOptions drawn = oit::frame_options(view);
     drawn.width = options.width;
     drawn.height = options.height;
     oit::Scene scene = oit::make_scene(drawn);
@@ -60,12 +63,20 @@ oit::GridResult run_view(const cellist::Device& device, const oit::GridView& vie
                            .most_layers = search.truth().reference().most_layers(),
                            .pixels_ambiguous = search.truth().pixels_ambiguous(),
                            .trials = search.trials()};
-    for (const std::string_view budget : view.budgets) {
+    for (const std::string& budget : view.budgets) {
         result.cases.push_back(run_case(device, frame, search, view, budget));
         print(result.cases.back(), options.cost, std::cout);
         std::cout.flush();
     }
     return result;
+}
+
+std::vector<oit::GridView> views_of(const oit::GridOptions& options) {
+    if (options.files.empty()) return oit::grid_views(options.meshes);
+    std::vector<oit::GridView> views;
+    for (const std::filesystem::path& mesh : options.files)
+        views.push_back(oit::view_of_mesh(mesh));
+    return views;
 }
 
 // Whether all cases are met.
@@ -76,9 +87,10 @@ bool run(const oit::GridOptions& options) {
               << device.info().name << " (driver " << device.info().driver << ")\n";
     std::vector<oit::GridResult> results;
     std::size_t cases = 0, met = 0;
-    for (const oit::GridView& view : oit::grid_views()) {
-        if (view.name.find(options.filter) == std::string_view::npos) continue;
-        if (options.meshes.empty() && is_of_mesh(view)) {
+    const std::vector<oit::GridView> views = views_of(options);
+    for (const oit::GridView& view : views) {
+        if (view.name.find(options.filter) == std::string::npos) continue;
+        if (options.files.empty() && options.meshes.empty() && is_of_mesh(view)) {
             std::cout << "left out, for want of --meshes: " << view.name << ", "
                       << view.budgets.size() << " cases\n";
             continue;
@@ -92,7 +104,7 @@ bool run(const oit::GridOptions& options) {
     if (cases == 0) throw support::InputError("--filter " + options.filter + " leaves no case");
     std::cout << met << " of " << cases << " cases met\n";
     if (!options.json.empty())
-        oit::write_file(options.json, oit::dump(to_json(results, options, device), 2) + '\n');
+        support::write_file(options.json, oit::dump(to_json(results, options, device), 2) + '\n');
     return met == cases;
 }
 

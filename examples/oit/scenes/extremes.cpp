@@ -169,18 +169,18 @@ Scene opaque(float) {
 }
 
 const SceneRegistration registrations[]{
-    SceneRegistration({"extreme-alphas", "opacities of 0, 2^-24, 1 - 2^-24 and 1", alphas}),
-    SceneRegistration({"extreme-layers", "10,000 layers", layers}),
+    SceneRegistration({"extreme-alphas", "opacities of 0, 2^-24, 1 - 2^-24 and 1", alphas, false}),
+    SceneRegistration({"extreme-layers", "10,000 layers", layers, false}),
     SceneRegistration(
-        {"extreme-underflow", "glass that lets 10^-100 of the light pass", underflow}),
+        {"extreme-underflow", "glass that lets 10^-100 of the light pass", underflow, false}),
     SceneRegistration({"extreme-bright", "colours of 10^4 and 10^-4", bright}),
     SceneRegistration({"extreme-coplanar", "surfaces at one depth", coplanar}),
     SceneRegistration(
         {"extreme-slivers", "triangles thinner than a pixel, and of any size", slivers}),
     SceneRegistration({"extreme-far", "corners at 10^30", far}),
     SceneRegistration({"extreme-nan", "vertices that are no numbers", nan}),
-    SceneRegistration({"extreme-nothing", "no surfaces", nothing}),
-    SceneRegistration({"extreme-opaque", "no transparent surfaces", opaque}),
+    SceneRegistration({"extreme-nothing", "no surfaces", nothing, false}),
+    SceneRegistration({"extreme-opaque", "no transparent surfaces", opaque, false}),
 };
 
 }  // namespace

@@ -1,13 +1,11 @@
 #include "figures.hpp"
 
 #include <cmath>
-#include <fstream>
 #include <iomanip>
 #include <ostream>
-#include <sstream>
 #include <string>
 
-#include "input_error.hpp"
+#include "frame_json.hpp"
 #include "number_text.hpp"
 
 namespace oit {
@@ -65,44 +63,15 @@ void print_exact_methods(const Sweep& sweep, std::ostream& out) {
             << "  " << m->setting.method->name << '\n';
 }
 
-ordered_json finite_or_null(double value) {
-    return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
-
-ordered_json or_null(const std::optional<std::uint32_t>& value) {
-    return value ? ordered_json(*value) : ordered_json(nullptr);
-}
-
-// The number that people read for a float: 0.35, and not what is added to the digits of a double.
-double as_read(float value) {
-    std::ostringstream text;
-    text << value;
-    return std::stod(text.str());
-}
-
 ordered_json to_json(const Measurement& m, bool on_front) {
-    const Quality& quality = m.setting.quality;
-    ordered_json json{{"options", text(m.setting)},        {"method", m.setting.method->name},
-                      {"exact", m.setting.method->exact},  {"size", or_null(quality.size)},
-                      {"layers", or_null(quality.layers)}, {"epsilon", as_read(quality.epsilon)},
-                      {"format", name_of(quality.format)}};
+    ordered_json json = json_of(m.setting);
     if (!m.drawn()) {
         json["failure"] = m.failure;
         return json;
     }
-    const Comparison& c = m.comparison;
-    json["ms"] = m.milliseconds;
-    json["fastest_ms"] = m.fastest;
-    json["lower_quartile_ms"] = m.lower_quartile;
-    json["upper_quartile_ms"] = m.upper_quartile;
-    json["frames"] = m.times.size();
+    json.update(times_json(m));
     json["bytes"] = m.bytes;
-    json["psnr_db"] = finite_or_null(c.psnr_db);
-    json["ssim"] = c.ssim;
-    json["max_abs_error"] = c.max_abs_error;
-    json["pixels_over_1_255"] = c.pixels_over;
-    json["pixels_explained"] = c.pixels_explained;
-    json["pixels_nan"] = c.pixels_nan;
+    json.update(json_of(m.comparison));
     json["pareto"] = on_front;
     return json;
 }
@@ -139,19 +108,14 @@ void print(const Sweep& sweep, std::ostream& out) {
 }
 
 ordered_json to_json(const Sweep& sweep) {
-    const FrameOptions& options = sweep.options;
-    ordered_json json;
-    json["scene"] = sweep.scene_name();
+    const TradeoffOptions& options = sweep.options;
+    ordered_json json = json_of(options, "cellist-tradeoff");
     json["device"] = sweep.device;
     json["driver"] = sweep.driver;
-    json["width"] = options.width;
-    json["height"] = options.height;
-    json["eyes"] = options.eye_separation ? 2 : 1;
-    json["samples"] = options.quality.samples;
-    json["alpha"] = as_read(options.alpha);
-    json["view"] = {options.orbit.azimuth_degrees, options.orbit.elevation_degrees};
-    json["time_s"] = options.time;
-    json["opaque_floor"] = options.opaque_floor;
+    json["methods"] = options.methods;
+    json["files"] = {{"json", json_of(options.json)},
+                     {"csv", json_of(options.csv)},
+                     {"html", json_of(options.html)}};
     json["triangles"] = sweep.triangles;
     json["fragments"] = sweep.fragments;
     json["most_layers"] = sweep.most_layers;
@@ -212,17 +176,6 @@ std::string to_csv(const Sweep& sweep) {
         csv += line + '\n';
     }
     return csv;
-}
-
-std::string dump(const ordered_json& json, int indent) {
-    return json.dump(indent, ' ', false, ordered_json::error_handler_t::replace);
-}
-
-void write_file(const std::filesystem::path& path, const std::string& text) {
-    std::ofstream file(path, std::ios::binary);
-    file << text;
-    file.close();
-    if (!file) throw support::InputError("cannot write '" + path.string() + "'");
 }
 
 }  // namespace oit

@@ -6,6 +6,8 @@
 
 #include "command_line.hpp"
 #include "figures.hpp"
+#include "files.hpp"
+#include "frame_json.hpp"
 #include "input_error.hpp"
 #include "number_text.hpp"
 #include "page.hpp"
@@ -69,10 +71,11 @@ void run(const oit::TradeoffOptions& options) {
         return std::pair(!measurement.drawn(), measurement.milliseconds);
     });
 
-    oit::print(sweep, std::cout);
-    if (!options.json.empty()) oit::write_file(options.json, oit::dump(to_json(sweep), 2) + '\n');
-    if (!options.csv.empty()) oit::write_file(options.csv, to_csv(sweep));
-    if (pictures) oit::write_file(options.html, to_html(sweep, *pictures));
+    oit::print(sweep, options.writes_to_stdout() ? std::cerr : std::cout);
+    if (!options.json.empty())
+        support::write_file(options.json, oit::dump(to_json(sweep), 2) + '\n');
+    if (!options.csv.empty()) support::write_file(options.csv, to_csv(sweep));
+    if (pictures) support::write_file(options.html, to_html(sweep, *pictures));
 }
 
 }  // namespace

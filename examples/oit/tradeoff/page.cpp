@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "figures.hpp"
+#include "frame_json.hpp"
 #include "image.hpp"
 #include "picture.hpp"
 #include "tradeoff_kernels.hpp"
@@ -12,30 +13,6 @@ namespace oit {
 namespace {
 
 using nlohmann::ordered_json;
-
-std::vector<cl_float4> linear_image(const Reference& reference) {
-    std::vector<cl_float4> image;
-    image.reserve(reference.image.size());
-    for (const glm::dvec3& colour : reference.image)
-        image.push_back({{static_cast<float>(colour.x), static_cast<float>(colour.y),
-                          static_cast<float>(colour.z), 1.0F}});
-    return image;
-}
-
-// What two pictures differ by as people see it, made larger.
-std::vector<std::uint8_t> difference(std::span<const cl_float4> a, std::span<const cl_float4> b) {
-    std::vector<std::uint8_t> bytes;
-    bytes.reserve(3 * a.size());
-    for (std::size_t p = 0; p < a.size(); ++p)
-        for (int c = 0; c < 3; ++c) {
-            const double error =
-                std::abs(support::srgb_from_linear(static_cast<double>(a[p].s[c])) -
-                         support::srgb_from_linear(static_cast<double>(b[p].s[c])));
-            bytes.push_back(static_cast<std::uint8_t>(
-                std::lround(255 * std::min(1.0, difference_factor * error))));
-        }
-    return bytes;
-}
 
 // JSON that can stand in a script element: no text in it ends that.
 std::string script_text(const ordered_json& json) {
@@ -59,7 +36,7 @@ Pictures::Pictures(const Reference& reference, const Frame& frame)
 void Pictures::add(const Setting& setting, const std::vector<cl_float4>& image) {
     const std::vector<cl_float4> picture = side_by_side(image, frame_);
     const std::size_t own = keep(support::srgb_bytes(picture));
-    pictures_[text(setting)] = {own, keep(difference(picture, reference_))};
+    pictures_[text(setting)] = {own, keep(shown_difference(picture, reference_))};
 }
 
 std::size_t Pictures::keep(std::span<const std::uint8_t> bytes) {

@@ -13,9 +13,6 @@
 
 namespace oit {
 
-/// How many times as large as they are, differences are shown.
-inline constexpr int difference_factor = 16;
-
 /// The pictures of a page, and how they differ from the reference. Equal ones are kept once.
 class Pictures {
 public:

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "frame_options.hpp"
 #include "measurement.hpp"
+#include "tradeoff_options.hpp"
 
 namespace oit {
 
@@ -20,7 +20,7 @@ struct LeftOut {
 
 /// All settings of a frame, measured on a device.
 struct Sweep {
-    FrameOptions options;
+    TradeoffOptions options;
     std::string device;
     std::string driver;
     std::uint64_t triangles = 0;

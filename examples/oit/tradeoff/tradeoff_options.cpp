@@ -1,11 +1,13 @@
 #include "tradeoff_options.hpp"
 
 #include <algorithm>
+#include <array>
 #include <sstream>
 
 #include <CLI/CLI.hpp>
 
 #include "command_line.hpp"
+#include "files.hpp"
 #include "input_error.hpp"
 
 namespace oit {
@@ -27,6 +29,10 @@ std::vector<std::string_view> read_methods(const std::string& text) {
 }
 
 }  // namespace
+
+bool TradeoffOptions::writes_to_stdout() const {
+    return std::ranges::any_of(std::array{json, csv, html}, support::is_standard_output);
+}
 
 TradeoffOptions parse_tradeoff_options(int count, const char* const* arguments) {
     TradeoffOptions options;
@@ -57,6 +63,7 @@ TradeoffOptions parse_tradeoff_options(int count, const char* const* arguments) 
     options.methods = read_methods(methods);
     options.frames =
         static_cast<std::uint32_t>(support::read_number("--frames", frames, 1, 1'000'000));
+    options.arguments.assign(arguments + 1, arguments + count);
     options.json = json;
     options.csv = csv;
     options.html = html;

@@ -17,6 +17,9 @@ struct TradeoffOptions : FrameOptions {
     std::filesystem::path json = {};
     std::filesystem::path csv = {};
     std::filesystem::path html = {};
+    /// A file goes to stdout, so that the table goes to stderr.
+    [[nodiscard]] bool writes_to_stdout() const;
+
     bool help = false;
     std::string help_text = {};
 };

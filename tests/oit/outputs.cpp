@@ -1,0 +1,91 @@
+// What a program writes is whole, or it says why not: files, stdout, and pictures of all frames.
+#include <nlohmann/json.hpp>
+
+#include "oit/support/program.hpp"
+
+namespace cellist::test {
+namespace {
+
+constexpr const char* small = "knot.obj --size 40x30 --frames 1 ";
+
+void require_full(const Program& program, const std::string& arguments, const std::string& what) {
+    const Outcome outcome = program.run(arguments);
+    INFO(arguments << ": " << outcome.error);
+    CHECK(outcome.exit_code == 1);
+    CHECK(contains(outcome.error, "cannot write " + what + ": No space left on device\n"));
+}
+
+TEST_CASE("a full disk is an error for every file of cellist-oit") {
+    const Program program(CELLIST_OIT_PROGRAM);
+    (void)program.folder().write("oit.png", "as it was");
+    for (const std::string options : {"--out", "--out x.png --write-reference",
+                                      "--out x.png --write-difference", "--out x.png --json"})
+        require_full(program, small + options + " /dev/full", "'/dev/full'");
+    // What follows the # are the redirections of Program::run().
+    require_full(program, small + std::string("--out x.png 2>stderr >/dev/full #"), "to stdout");
+    require_full(program, small + std::string("--out - 2>stderr >/dev/full #"), "to stdout");
+    require_full(program, "--help 2>stderr >/dev/full #", "to stdout");
+    CHECK(read_file(program.folder() / "oit.png") == "as it was");
+}
+
+TEST_CASE("a full disk is an error for every file of cellist-tradeoff") {
+    const Program program(CELLIST_TRADEOFF_PROGRAM);
+    const std::string small_sweep = "knot.obj --size 16x12 --frames 1 --methods weighted ";
+    for (const std::string option : {"--html", "--csv", "--json"})
+        require_full(program, small_sweep + option + " /dev/full", "'/dev/full'");
+    require_full(program, small_sweep + "2>stderr >/dev/full #", "to stdout");
+}
+
+TEST_CASE("a closed pipe is quiet") {
+    const Program program(CELLIST_OIT_PROGRAM);
+    // The reader has gone before anything is written.
+    for (const std::string trap : {"", "trap '' PIPE; "}) {
+        const Outcome outcome =
+            program.run("--help 2>&3 | true; } 3>error #", trap + "{ sleep 0; ");
+        INFO(outcome.error);
+        CHECK(read_file(program.folder() / "error").empty());
+    }
+}
+
+TEST_CASE("a picture on stdout leaves the report to stderr") {
+    const Program program(CELLIST_OIT_PROGRAM);
+    const Outcome file = program.run(small + std::string("--out a.png"));
+    REQUIRE(file.exit_code == 0);
+    const Outcome screen = program.run(small + std::string("--out - --json a.json"));
+    REQUIRE(screen.exit_code == 0);
+    CHECK(screen.out == read_file(program.folder() / "a.png"));
+    CHECK(contains(screen.error, "cellist-oit knot.obj"));
+    CHECK_FALSE(std::filesystem::exists(program.folder() / "-"));
+    const Outcome figures = program.run(small + std::string("--out a.png --json /dev/stdout"));
+    REQUIRE(figures.exit_code == 0);
+    CHECK(nlohmann::json::parse(figures.out)["scene"] == "knot.obj");
+    program.require_refused(small + std::string("--out - --json /dev/stdout"), "same file");
+}
+
+TEST_CASE("every frame is written where the name has a number") {
+    const Program program(CELLIST_OIT_PROGRAM);
+    const Outcome outcome = program.run(
+        "knot.obj --size 40x30 --frames 3 --turn 90 --out f-%03d.png --write-reference r.jpg "
+        "--write-difference d.exr --json caf\xE9.json");
+    INFO(outcome.error);
+    REQUIRE(outcome.exit_code == 0);
+    std::string pictures[3];
+    for (int i = 0; i < 3; ++i)
+        pictures[i] = read_file(program.folder() / ("f-00" + std::to_string(i + 1) + ".png"));
+    CHECK(pictures[0].starts_with("\x89PNG"));
+    CHECK(pictures[0] != pictures[1]);
+    CHECK(pictures[1] != pictures[2]);
+    CHECK_FALSE(std::filesystem::exists(program.folder() / "f-004.png"));
+    CHECK(read_file(program.folder() / "r.jpg").starts_with("\xFF\xD8"));
+    CHECK(read_file(program.folder() / "d.exr").starts_with("v/1\x01"));
+    const auto figures = nlohmann::json::parse(read_file(program.folder() / "caf\xE9.json"));
+    CHECK(figures["files"]["json"] == "caf\\xE9.json");
+    CHECK(figures["frames_ms"].size() == 3);
+    CHECK(figures["psnr_db"] > 100);
+    // The last frame is what a single picture shows.
+    REQUIRE(program.run("knot.obj --size 40x30 --frames 3 --turn 90 --out a.png").exit_code == 0);
+    CHECK(read_file(program.folder() / "a.png") == pictures[2]);
+}
+
+}  // namespace
+}  // namespace cellist::test
