@@ -1,8 +1,6 @@
 #include "fragment_source.hpp"
 
-#include <bit>
 #include <initializer_list>
-#include <limits>
 
 #include "blend_function.hpp"
 #include "oit_kernels.hpp"
@@ -10,7 +8,6 @@
 namespace oit {
 namespace {
 
-constexpr cl_uint infinity_bits = std::bit_cast<cl_uint>(std::numeric_limits<cl_float>::infinity());
 constexpr cl_uint no_owner = 0xFFFFFFFF;
 
 std::string joined(std::initializer_list<std::string_view> parts) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <bit>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +18,10 @@
 #include "raster/rasteriser.hpp"
 
 namespace oit {
+
+/// What depths as bits of floats begin with, where atomic minima find the least.
+inline constexpr cl_uint infinity_bits =
+    std::bit_cast<cl_uint>(std::numeric_limits<cl_float>::infinity());
 
 /// What all methods have in common: projects a frame's scene, draws its opaque surfaces, and hands the
 /// transparent fragments in front of them to a method's pass; then kernels over the pixels make the

@@ -17,17 +17,20 @@ public:
           add_(source.pass(text(), "moments.cl")),
           resolve_(source.screen_kernel(text(), "moments.cl", "oit_resolve_moments")),
           moments_(source.device(), 5 * source.samples()),
-          sums_(source.device(), 4 * source.samples()) {}
+          nearest_(source.device(), source.samples()),
+          sums_(source.device(), 5 * source.samples()) {}
 
     void store() override {
         moments_.fill(0);
+        nearest_.fill(infinity_bits);
         sums_.fill(0);
-        source_.draw(sum_moments_, moments_);
-        source_.draw(add_, moments_, sums_);
+        source_.draw(sum_moments_, moments_, nearest_);
+        source_.draw(add_, moments_, nearest_, sums_);
     }
-    void resolve() override { source_.run_on_screen(resolve_, moments_, sums_); }
+    void resolve() override { source_.run_on_screen(resolve_, sums_); }
     [[nodiscard]] std::uint64_t device_bytes() const override {
-        return (moments_.size() + sums_.size()) * sizeof(cl_long);
+        return (moments_.size() + sums_.size()) * sizeof(cl_long) +
+               nearest_.size() * sizeof(cl_uint);
     }
 
 private:
@@ -36,6 +39,7 @@ private:
     raster::Pass add_;
     cellist::Kernel resolve_;
     cellist::Buffer<cl_long> moments_;
+    cellist::Buffer<cl_uint> nearest_;
     cellist::Buffer<cl_long> sums_;
 };
 

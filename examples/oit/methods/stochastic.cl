@@ -41,7 +41,7 @@ static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitPlace* 
         volatile global long* own = sums + 5 * sample;
         oit_accumulate_colour(own, frame, fragment->colour,
                               fragment->alpha * (float)seen / (float)OIT_TRIALS);
-        oit_accumulate(&own[4], oit_absorbance(fragment->alpha));
+        oit_accumulate_absorbance(&own[4], oit_absorbance(fragment->alpha));
 #endif
     }
 }
@@ -53,8 +53,8 @@ kernel void oit_resolve_stochastic(global const long* sums, OIT_SCREEN) {
     if (!oit_pixel(OIT_SCREEN_PASS, &pixel)) return;
     OitLights lights = oit_lights();
     for (int i = 0; i < OIT_LIGHTS; ++i) {
-        global const long* own = sums + 5 * (pixel.pixel * OIT_SAMPLES + pixel.first_sample + i);
-        oit_set_light(&lights.of[i], &pixel.frame, own, oit_sum(&own[4]));
+        const size_t sample = pixel.pixel * OIT_SAMPLES + pixel.first_sample + i;
+        oit_set_light(&lights.of[i], &pixel.frame, sums + 5 * sample);
     }
     oit_write(OIT_SCREEN_PASS, &pixel, &lights);
 }

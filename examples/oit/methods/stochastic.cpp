@@ -1,7 +1,5 @@
 // Fragments hide each other at random, in a number of trials.
 #include <array>
-#include <bit>
-#include <limits>
 
 #include "accumulating.hpp"
 #include "oit_kernels.hpp"
@@ -11,7 +9,6 @@ namespace {
 
 constexpr std::array sizes{2U, 4U, 8U, 16U, 32U, 64U};
 constexpr std::uint32_t default_trials = 8;
-constexpr cl_uint infinity_bits = std::bit_cast<cl_uint>(std::numeric_limits<cl_float>::infinity());
 
 std::uint32_t trials_of(const FragmentSource& source) {
     return source.frame().quality.size.value_or(default_trials);

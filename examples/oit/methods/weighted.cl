@@ -1,6 +1,7 @@
 // Weighted blended transparency (McGuire, Bavoil: "Weighted Blended Order-Independent Transparency",
 // JCGT 2013, equations 7 and 10): the mean of all colours, weighted by opacity and nearness, in place of
-// their order. sums: 5 for each sample: of colour and weight, and of absorbance.
+// their order. The weights are those of the paper, divided by the greatest.
+// sums: 5 for each sample: of colour and weight, and of absorbance.
 
 #ifdef OIT_PASS
 #define OIT_TARGET volatile global long* sums
@@ -8,7 +9,7 @@
 
 static inline float oit_weight(float unit_depth) {
     const float near = 1.0f - unit_depth;
-    return fmax(1e-2f, 3e3f * near * near * near);
+    return fmax(1e-2f / 3e3f, near * near * near);
 }
 
 static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitPlace* place,
@@ -18,7 +19,7 @@ static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitPlace* 
         if (!(fragment->coverage >> s & 1)) continue;
         volatile global long* own = sums + 5 * (place->pixel * OIT_SAMPLES + s);
         oit_accumulate_colour(own, frame, fragment->colour, weight);
-        oit_accumulate(&own[4], oit_absorbance(fragment->alpha));
+        oit_accumulate_absorbance(&own[4], oit_absorbance(fragment->alpha));
     }
 }
 
@@ -29,8 +30,8 @@ kernel void oit_resolve_weighted(global const long* sums, OIT_SCREEN) {
     if (!oit_pixel(OIT_SCREEN_PASS, &pixel)) return;
     OitLights lights = oit_lights();
     for (int i = 0; i < OIT_LIGHTS; ++i) {
-        global const long* own = sums + 5 * (pixel.pixel * OIT_SAMPLES + pixel.first_sample + i);
-        oit_set_light(&lights.of[i], &pixel.frame, own, oit_sum(&own[4]));
+        const size_t sample = pixel.pixel * OIT_SAMPLES + pixel.first_sample + i;
+        oit_set_light(&lights.of[i], &pixel.frame, sums + 5 * sample);
     }
     oit_write(OIT_SCREEN_PASS, &pixel, &lights);
 }
