@@ -1,8 +1,5 @@
 #include "measurement.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <exception>
 #include <numeric>
 
@@ -24,24 +21,15 @@ std::vector<double> time_frames(Renderer& renderer, std::uint32_t frames) {
     return times;
 }
 
-// The value below which the part is, between two of the values where it is between them.
-double quantile(const std::vector<double>& sorted, double part) {
-    const double place = part * static_cast<double>(sorted.size() - 1);
-    const auto below = static_cast<std::size_t>(place);
-    const std::size_t above = std::min(below + 1, sorted.size() - 1);
-    return std::lerp(sorted[below], sorted[above], place - static_cast<double>(below));
-}
-
 }  // namespace
 
 void Measurement::add(const std::vector<double>& more) {
     times.insert(times.end(), more.begin(), more.end());
-    std::vector<double> sorted = times;
-    std::ranges::sort(sorted);
-    fastest = sorted.front();
-    milliseconds = quantile(sorted, 0.5);
-    lower_quartile = quantile(sorted, 0.25);
-    upper_quartile = quantile(sorted, 0.75);
+    const Spread of_times = spread_of(times);
+    fastest = of_times.least_ms;
+    milliseconds = of_times.median_ms;
+    lower_quartile = of_times.lower_quartile_ms;
+    upper_quartile = of_times.upper_quartile_ms;
 }
 
 Measurement measure(const cellist::Device& device, const Frame& frame, const Setting& setting,

@@ -8,6 +8,7 @@
 
 #include "comparison.hpp"
 #include "setting.hpp"
+#include "spread.hpp"
 
 namespace oit {
 
@@ -27,6 +28,9 @@ struct Measurement {
 
     /// Times of more frames.
     void add(const std::vector<double>& more);
+    [[nodiscard]] Spread spread_ms() const {
+        return {fastest, lower_quartile, milliseconds, upper_quartile};
+    }
     /// How far from the median half of the times are at most, as a part of it.
     [[nodiscard]] double spread() const {
         return (upper_quartile - lower_quartile) / (2 * milliseconds);

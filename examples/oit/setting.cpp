@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <sstream>
+#include <tuple>
 #include <utility>
 
 namespace oit {
@@ -32,6 +34,18 @@ std::string text(const Setting& setting) {
     if (quality.resolve != usual.resolve) out << " --resolve sample";
     if (quality.depth_range) out << " --depth-range";
     return out.str();
+}
+
+bool plainer(const Setting& a, const Setting& b) {
+    // Less is plainer.
+    const auto order = [](const Setting& setting) {
+        const Quality& quality = setting.quality;
+        return std::tuple(!setting.method->exact, quality.layers || quality.epsilon > 0,
+                          quality.format, setting.method->position,
+                          -static_cast<std::int64_t>(quality.layers.value_or(~0U)), quality.epsilon,
+                          -static_cast<std::int64_t>(quality.size.value_or(0)));
+    };
+    return order(a) < order(b);
 }
 
 Setting exact_setting(const Quality& quality) {

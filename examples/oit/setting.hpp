@@ -21,6 +21,12 @@ struct Setting {
 /// The options of cellist-oit that give a setting: "--method linked --layers 8".
 [[nodiscard]] std::string text(const Setting& setting);
 
+/// True where `a` is the plainer of two: where times do not tell which is faster, it is chosen.
+/// First come exact methods, then what keeps all layers and does not end early, then floats, then
+/// the method that comes first in the table, and then more layers, a later end and the greater
+/// size.
+[[nodiscard]] bool plainer(const Setting& a, const Setting& b);
+
 /// All layers in nodes of floats with the method `linked`: what other settings are a trade of.
 /// Samples, resolve, ranges and scale of depth are those of `quality`.
 [[nodiscard]] Setting exact_setting(const Quality& quality);

@@ -23,6 +23,9 @@ endif()
 foreach(part
         "id=\"edge\" style=\"left: 30%;\""
         "class=\"point on-front\""
+        "<text [^>]*text-anchor=\"end\">fixed</text>"
+        "<rect class=\"bar\""
+        "<button type=\"button\" aria-pressed=\"true\""
         "A: reference"
         "alt=\"difference of [a-z]"
         "<td class=\"text\"><code>--method weighted</code></td>")

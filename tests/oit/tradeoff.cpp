@@ -67,6 +67,40 @@ TEST_CASE("times within three in a hundred count as equal") {
           }) == std::vector{false, true, true, true, false});
 }
 
+TEST_CASE("a front is not of settings that were fastest by chance") {
+    oit::Measurement plain = measured({}, 20, 99), lucky = measured({}, 12, 60),
+                     faster = measured({}, 5, 40);
+    plain.add({18, 25, 30});
+    lucky.add({26, 28, 31});
+    faster.add({5, 6, 6});
+    CHECK(oit::pareto_front(std::vector{plain, lucky, faster}) == std::vector{true, false, true});
+}
+
+TEST_CASE("a relation of times whose spreads overlap is not told") {
+    oit::Sweep noisy = sweep();
+    noisy.measurements[1].add({2, 4});
+    noisy.measurements[2] = measured({}, 2, 120, "counted");
+    noisy.measurements[2].add({1, 5});
+    const auto exact = oit::exact_methods(noisy);
+    REQUIRE(exact.size() == 2);
+    CHECK(exact[1].factor < 0.7);
+    CHECK(exact[1].least < exact[1].factor);
+    CHECK(exact[1].most > 1);
+    CHECK_FALSE(exact[1].told);
+    std::ostringstream out;
+    print(noisy, out);
+    CHECK(contains(out.str(), "counted  not told apart"));
+    const json figures = json::parse(oit::dump(to_json(noisy), 2));
+    CHECK(figures["exact_methods"][1]["told_apart"] == false);
+    CHECK(oit::exact_methods(sweep())[1].told);
+}
+
+TEST_CASE("pixels are counted by layers: none, 1, 2 to 3, 4 to 7 and so on") {
+    oit::Reference reference;
+    reference.offsets = {0, 0, 1, 3, 6, 10, 18};
+    CHECK(oit::pixels_by_layers(reference) == std::vector<std::uint64_t>{1, 1, 2, 1, 1});
+}
+
 TEST_CASE("half of the times are within the spread") {
     oit::Measurement measurement;
     measurement.add({5, 1, 9});

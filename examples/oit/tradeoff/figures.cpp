@@ -44,23 +44,38 @@ void print_settings(const Sweep& sweep, std::ostream& out) {
             << fixed(100 * spread, 0) << " % and more. Smaller differences mean nothing.\n";
 }
 
+std::string quartiles(const Relation& relation) {
+    return fixed(relation.least, 2) + " to " + fixed(relation.most, 2);
+}
+
+// What a factor is worth.
+std::string untold(const Relation& relation) {
+    return relation.told ? "" : "  not told apart: the spreads overlap";
+}
+
 void print_fewer_layers(const Sweep& sweep, std::ostream& out) {
     const std::vector<Relation> relations = fewer_layers(sweep);
     if (relations.empty()) return;
     out << "\nNearest layers against all " << sweep.most_layers
-        << "\n     layers  speed-up  PSNR dB\n";
-    for (const auto& [m, factor] : relations)
-        out << std::setw(11) << *m->setting.quality.layers << std::setw(10) << fixed(factor, 2)
-            << std::setw(9) << decibels(m->comparison.psnr_db) << '\n';
+        << "\n     layers  speed-up           of half  PSNR dB\n";
+    for (const Relation& relation : relations)
+        out << std::setw(11) << *relation.measurement->setting.quality.layers << std::setw(10)
+            << fixed(relation.factor, 2) << std::setw(18) << quartiles(relation) << std::setw(9)
+            << decibels(relation.measurement->comparison.psnr_db) << untold(relation) << '\n';
 }
 
 void print_exact_methods(const Sweep& sweep, std::ostream& out) {
     const std::vector<Relation> relations = exact_methods(sweep);
     if (relations.size() < 2) return;
-    out << "\nExact methods against linked, nodes of floats\n         ms  times as long\n";
-    for (const auto& [m, factor] : relations)
-        out << std::setw(11) << fixed(m->milliseconds, 2) << std::setw(15) << fixed(factor, 2)
-            << "  " << m->setting.method->name << '\n';
+    out << "\nExact methods against linked, nodes of floats\n"
+           "         ms  times as long           of half\n";
+    for (const Relation& relation : relations) {
+        const Measurement& m = *relation.measurement;
+        out << std::setw(11) << fixed(m.milliseconds, 2) << std::setw(15)
+            << fixed(relation.factor, 2) << std::setw(18) << quartiles(relation) << "  "
+            << m.setting.method->name
+            << (m.setting.method->name == "linked" ? "" : untold(relation)) << '\n';
+    }
 }
 
 ordered_json to_json(const Measurement& m, bool on_front) {
@@ -119,6 +134,7 @@ ordered_json to_json(const Sweep& sweep) {
     json["triangles"] = sweep.triangles;
     json["fragments"] = sweep.fragments;
     json["most_layers"] = sweep.most_layers;
+    json["pixels_by_layers"] = sweep.pixels_by_layers;
     json["frames"] = sweep.frames;
     json["equally_fast"] = equally_fast;
     json["typical_spread"] = typical_spread(sweep.measurements);
@@ -127,17 +143,23 @@ ordered_json to_json(const Sweep& sweep) {
     for (std::size_t i = 0; i < sweep.measurements.size(); ++i)
         json["settings"].push_back(to_json(sweep.measurements[i], front[i]));
     json["fewer_layers"] = ordered_json::array();
-    for (const auto& [m, factor] : fewer_layers(sweep))
+    for (const auto& [m, factor, least, most, told] : fewer_layers(sweep))
         json["fewer_layers"].push_back({{"layers", *m->setting.quality.layers},
                                         {"ms", m->milliseconds},
                                         {"speed_up", factor},
+                                        {"speed_up_least", least},
+                                        {"speed_up_most", most},
+                                        {"told_apart", told},
                                         {"psnr_db", finite_or_null(m->comparison.psnr_db)},
                                         {"ssim", m->comparison.ssim}});
     json["exact_methods"] = ordered_json::array();
-    for (const auto& [m, factor] : exact_methods(sweep))
+    for (const auto& [m, factor, least, most, told] : exact_methods(sweep))
         json["exact_methods"].push_back({{"method", m->setting.method->name},
                                          {"ms", m->milliseconds},
                                          {"times_linked", factor},
+                                         {"times_linked_least", least},
+                                         {"times_linked_most", most},
+                                         {"told_apart", told},
                                          {"bytes", m->bytes}});
     json["left_out"] = ordered_json::array();
     for (const auto& [method, reason] : sweep.left_out)

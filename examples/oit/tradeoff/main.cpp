@@ -47,6 +47,7 @@ void run(const oit::TradeoffOptions& options) {
                                   "', so there is nothing to compare");
     sweep.fragments = reference.fragments.size();
     sweep.most_layers = reference.most_layers();
+    sweep.pixels_by_layers = oit::pixels_by_layers(reference);
     sweep.left_out = oit::left_out(frame, options.methods);
 
     std::optional<oit::Pictures> pictures;

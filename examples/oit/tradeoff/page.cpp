@@ -58,8 +58,12 @@ std::string to_html(const Sweep& sweep, const Pictures& pictures) {
     figures["pictures"] = pictures.uris();
     figures["difference_factor"] = difference_factor;
     figures["psnr_enough"] = psnr_enough;
-    std::string page(tradeoff::kernels::page_html);
-    replace(page, "{{figures}}", script_text(figures));  // last in the page, so first here
+    using namespace tradeoff::kernels;
+    std::string page(page_html);
+    // From the end to the beginning, so that no mark is sought in what was put in.
+    replace(page, "{{script}}", std::string(text_js).append(plot_js).append(page_js));
+    replace(page, "{{figures}}", script_text(figures));
+    replace(page, "{{style}}", std::string(page_css));
     replace(page, "{{title}}", escaped(sweep.scene_name()));
     return page;
 }

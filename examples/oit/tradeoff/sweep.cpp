@@ -1,6 +1,7 @@
 #include "sweep.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <filesystem>
 #include <utility>
 
@@ -18,9 +19,8 @@ double accuracy(const Measurement& measurement) {
 }
 
 bool beats(const Measurement& a, const Measurement& b) {
-    return a.drawn() && a.milliseconds <= equally_fast * b.milliseconds &&
-           accuracy(a) >= accuracy(b) &&
-           (equally_fast * a.milliseconds < b.milliseconds || accuracy(a) > accuracy(b));
+    return a.drawn() && !told_slower(a.spread_ms(), b.spread_ms()) && accuracy(a) >= accuracy(b) &&
+           (told_slower(b.spread_ms(), a.spread_ms()) || accuracy(a) > accuracy(b));
 }
 
 constexpr std::uint32_t rounds = 3;
@@ -34,6 +34,13 @@ std::uint32_t frames_in(std::uint32_t round, std::uint32_t frames) {
 bool gives_nothing_up(const Measurement& measurement) {
     const auto& [method, quality] = measurement.setting;
     return measurement.drawn() && method->exact && quality == exact_setting(quality).quality;
+}
+
+// How many times as long `b` takes as `a`.
+Relation relation(const Measurement& of, const Measurement& a, const Measurement& b) {
+    const Spread x = a.spread_ms(), y = b.spread_ms();
+    return {&of, y.median_ms / x.median_ms, y.lower_quartile_ms / x.upper_quartile_ms,
+            y.upper_quartile_ms / x.lower_quartile_ms, told_slower(x, y) || told_slower(y, x)};
 }
 
 const Measurement* all_layers(const Sweep& sweep) {
@@ -94,6 +101,14 @@ double typical_spread(std::span<const Measurement> measurements) {
     return spreads.empty() ? 0 : support::median(std::move(spreads));
 }
 
+std::vector<std::uint64_t> pixels_by_layers(const Reference& reference) {
+    std::vector<std::uint64_t> bins(std::bit_width(reference.most_layers()) + 1);
+    for (std::size_t p = 0; p + 1 < reference.offsets.size(); ++p)
+        ++bins[static_cast<std::size_t>(
+            std::bit_width(reference.offsets[p + 1] - reference.offsets[p]))];
+    return bins;
+}
+
 std::vector<bool> pareto_front(std::span<const Measurement> measurements) {
     std::vector<bool> front;
     for (const Measurement& own : measurements)
@@ -110,7 +125,7 @@ std::vector<Relation> fewer_layers(const Sweep& sweep) {
     if (all == nullptr) return result;
     for (const Measurement& measurement : sweep.measurements)
         if (measurement.drawn() && measurement.setting.quality.layers)
-            result.push_back({&measurement, all->milliseconds / measurement.milliseconds});
+            result.push_back(relation(measurement, measurement, *all));
     std::ranges::sort(result, {}, [](const Relation& relation) {
         return *relation.measurement->setting.quality.layers;
     });
@@ -123,7 +138,7 @@ std::vector<Relation> exact_methods(const Sweep& sweep) {
     if (all == nullptr) return result;
     for (const Measurement& measurement : sweep.measurements)
         if (gives_nothing_up(measurement))
-            result.push_back({&measurement, measurement.milliseconds / all->milliseconds});
+            result.push_back(relation(measurement, *all, measurement));
     return result;
 }
 

@@ -25,7 +25,9 @@ struct Sweep {
     std::string driver;
     std::uint64_t triangles = 0;
     std::uint64_t fragments = 0;
-    std::uint64_t most_layers = 0;               ///< in any pixel
+    std::uint64_t most_layers = 0;  ///< in any pixel
+    /// Pixels by layers: none, 1, 2 to 3, 4 to 7 and so on.
+    std::vector<std::uint64_t> pixels_by_layers = {};
     std::uint32_t frames = 0;                    ///< of each setting that are timed
     std::vector<Measurement> measurements = {};  ///< by time; failures last
     std::vector<LeftOut> left_out = {};
@@ -46,9 +48,6 @@ struct Sweep {
 /// bits, and what is left is rounding.
 inline constexpr double psnr_enough = 96;
 
-/// Times count as equal up to this factor.
-inline constexpr double equally_fast = 1.03;
-
 /// Measures the settings by turns: a part of the frames of each, and then the next part, so that
 /// what slows the machine for a while does not fall to a few of them. `measured` gets what the first
 /// round has found of a setting, and the image; `progress` the finished part of the other rounds.
@@ -62,13 +61,20 @@ inline constexpr double equally_fast = 1.03;
 /// in the middle.
 [[nodiscard]] double typical_spread(std::span<const Measurement> measurements);
 
+/// Pixels of the reference by layers, as Sweep has them.
+[[nodiscard]] std::vector<std::uint64_t> pixels_by_layers(const Reference& reference);
+
 /// Which measurements no other one beats: none is as fast and as accurate, and better in one of these.
+/// What is slower is slower by told_slower().
 [[nodiscard]] std::vector<bool> pareto_front(std::span<const Measurement> measurements);
 
-/// A measurement, and how many times as long another one takes.
+/// A measurement, and how many times as long another one takes: by the medians, and at least and at
+/// most by the quartiles.
 struct Relation {
     const Measurement* measurement;
     double factor;
+    double least, most;
+    bool told;  ///< whether the times tell which of the two is slower
 };
 
 /// The K nearest layers in lists against all of them, K ascending: the factor is the speed-up.
