@@ -89,7 +89,8 @@ Budget parse_budget(std::string_view text) {
     if (!largest) refuse(text, std::string(expected));
     if (*largest >= 1)
         refuse(text,
-               "every picture meets this, for no error is larger than 1: expected less, such as "
+               "every picture meets this, for no error is larger than 1: "
+               "expected less, such as "
                "1/255, or a PSNR such as 40dB");
     if (!(*largest > 0)) refuse(text, "an error above 0: no picture of floats is without");
     return {Budget::Kind::largest, *largest};

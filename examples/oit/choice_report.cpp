@@ -73,13 +73,15 @@ std::string reason(const Candidate& candidate) {
         case Fate::over_budget:
             return "over the budget";
         case Fate::as_fast:
-            return "as fast, no more accurate";
+            return "as fast, not as plain";
         case Fate::slower:
             return candidate.fastest_ms ? "slower" : "expected to be slower, not drawn";
         case Fate::not_needed:
             return "not needed";
         case Fate::failed:
             return "failed";
+        case Fate::not_reached:
+            return "not reached in time";
     }
     return {};
 }
@@ -96,9 +98,14 @@ std::string limit_text(const PictureError& error, const Budget& budget) {
 }
 
 std::string other_order_text(const Choice& choice, const Budget& budget) {
-    return "in " + counted(choice.scene.pixels_untold[0], "pixel") +
-           " float does not tell the order of layers: with the other order there, " +
-           limit_text(choice.errors.all, budget);
+    const bool counts = budget.strict, is_psnr = budget.kind == Budget::Kind::psnr;
+    return "in " + counted(choice.scene.pixels_untold[0], "undecided pixel") +
+           " float does not tell the order of layers: " +
+           (counts ? "apart from these, " : "with the other order there, ") +
+           limit_text(counts ? choice.errors.told : choice.errors.all, budget) +
+           (counts || is_psnr || choice.errors.undecided_pixels == 0
+                ? ""
+                : ", over " + budget.text() + " in " + grouped(choice.errors.undecided_pixels));
 }
 
 // Where all layers in float were chosen, there is nothing to compare.
@@ -106,6 +113,35 @@ std::string speed_text(const Choice& choice) {
     const bool is_exact = text(choice.setting) == text(exact_setting(choice.setting.quality));
     if (!choice.met || !choice.exact_times || is_exact) return {};
     return "all layers in float take " + fixed(*choice.exact_times, 2) + " times as long";
+}
+
+// "12.1 to 13.4 ms"
+std::string quartiles_text(const Spread& times) {
+    return fixed(times.lower_quartile_ms, 2) + " to " + fixed(times.upper_quartile_ms, 2) + " ms";
+}
+
+std::string chosen_text(const Choice& choice) {
+    return short_text(choice.setting) + ": " + fixed(choice.times.median_ms, 2) + " ms (half of " +
+           counted(choice.turns, "frame") + " in " + quartiles_text(choice.times) + ")";
+}
+
+// Why it is this one, where times do not say so.
+std::string plainest_text(const Choice& choice) {
+    const std::uint64_t others = choice.count(Fate::as_fast);
+    if (others == 0) return {};
+    return "times do not tell " +
+           std::string(others == 1 ? "one other setting" : grouped(others) + " other settings") +
+           " from the fastest: the plainest is chosen";
+}
+
+std::string search_text(const Choice& choice) {
+    std::string text = counted(choice.candidates.size(), "setting") + ", " +
+                       counted(choice.draws, "frame") + ", " + fixed(choice.took_ms / 1000, 1) +
+                       " s";
+    if (const std::uint64_t left = choice.count(Fate::not_reached); left > 0)
+        text +=
+            "; the time was over before " + counted(left, "setting") + ": raise --search-seconds";
+    return text;
 }
 
 // ---- the settings that were not chosen
@@ -161,7 +197,7 @@ void print_others(const Choice& choice, const Budget& budget, std::ostream& out)
         out << "    " << std::left << std::setw(42) << short_text(other->setting) << std::right
             << std::setw(17) << times_text(*other) << std::setw(12)
             << (other->error ? budget.text_of(*other->error) : "-") << "  " << reason(*other)
-            << '\n';
+            << (other->times ? " (" + quartiles_text(*other->times) + ")" : "") << '\n';
     std::erase_if(others, [&](const Candidate* other) {
         return std::ranges::find(shown, other) != shown.end();
     });
@@ -173,7 +209,7 @@ void print_others(const Choice& choice, const Budget& budget, std::ostream& out)
 // ---- how the budget was kept
 
 std::string kept_text(const Budget& budget, const KeptBudget& kept) {
-    const std::string worst = limit_text(kept.worst().told, budget);
+    const std::string worst = limit_text(budget.counted(kept.worst()), budget);
     return grouped(kept.checked()) + " of " + counted(kept.frames(), "frame") + " checked, " +
            grouped(kept.chosen_again()) + " chosen again, " + grouped(kept.over().size()) +
            " over the budget; the worst " +
@@ -182,7 +218,10 @@ std::string kept_text(const Budget& budget, const KeptBudget& kept) {
 
 // Whether it is for the setting, or for what can be proven of any.
 std::string not_met_reason(const Choice& choice, const Budget& budget) {
-    if (choice.met || budget.met_by(choice.scene.exact)) return "no setting meets the budget";
+    if (choice.met || budget.met_by(choice.scene.exact))
+        return budget.strict && budget.met_by(choice.errors.told)
+                   ? "--strict counts " + counted(choice.errors.undecided_pixels, "undecided pixel")
+                   : "no setting meets the budget";
     return (budget.kind == Budget::Kind::psnr ? "no more than " : "no less than ") +
            budget.text_of(choice.scene.exact) +
            " can be proven of any picture of this frame, for floats are rounded; "
@@ -203,6 +242,13 @@ nlohmann::ordered_json json_of(const PictureError& error) {
     return json;
 }
 
+nlohmann::ordered_json json_of(const Spread& times) {
+    return {{"ms", times.median_ms},
+            {"fastest_ms", times.least_ms},
+            {"lower_quartile_ms", times.lower_quartile_ms},
+            {"upper_quartile_ms", times.upper_quartile_ms}};
+}
+
 }  // namespace
 
 void KeptBudget::add(const Keeper::Drawn& drawn, double time, const Budget& budget) {
@@ -211,11 +257,20 @@ void KeptBudget::add(const Keeper::Drawn& drawn, double time, const Budget& budg
     if (drawn.checked) ++checked_;
     if (drawn.chosen_again) ++chosen_again_;
     if (!drawn.errors) return;
-    if (!budget.met_by(drawn.errors->told)) {
+    if (!budget.met_by(*drawn.errors)) {
         if (over_.empty()) first_over_ = frames_;
         over_.push_back(time);
+    } else if (!budget.met_by(drawn.errors->all)) {
+        undecided_pixels_ = std::max(undecided_pixels_, drawn.errors->undecided_pixels);
     }
-    if (budget.better(worst_.told, drawn.errors->told)) worst_ = *drawn.errors;
+    if (budget.better(budget.counted(worst_), budget.counted(*drawn.errors)))
+        worst_ = *drawn.errors;
+}
+
+std::string KeptBudget::verdict() const {
+    if (!met()) return "not met";
+    if (undecided_pixels_ == 0) return "met";
+    return "met except " + counted(undecided_pixels_, "undecided pixel");
 }
 
 void print(const Choice& choice, const Budget& budget, const KeptBudget& kept, std::ostream& out) {
@@ -225,7 +280,8 @@ void print(const Choice& choice, const Budget& budget, const KeptBudget& kept, s
     };
     const SceneMeasure& scene = choice.scene;
     const bool is_psnr = budget.kind == Budget::Kind::psnr;
-    line("budget", (is_psnr ? "PSNR of at least " : "errors of at most ") + budget.text());
+    line("budget", (is_psnr ? "PSNR of at least " : "errors of at most ") + budget.text() +
+                       (budget.strict ? ", strict: " : ": ") + kept.verdict());
     line("layers", layers_text(scene));
     if (scene.fragments > 0) {
         line("opacity", fixed(static_cast<double>(scene.least_alpha), 3) + " to " +
@@ -233,16 +289,12 @@ void print(const Choice& choice, const Budget& budget, const KeptBudget& kept, s
         line("light that passes", light_text(scene));
         line("order of layers", untold_text(scene));
     }
-    line(choice.met ? "chosen" : "best there is", short_text(choice.setting) + ": " +
-                                                      fixed(choice.fastest_ms, 2) +
-                                                      " ms (the least in the search)");
-    line("error", limit_text(choice.errors.told, budget) + ", " + basis(choice.bounded));
+    line(choice.met ? "chosen" : "best there is", chosen_text(choice));
+    line("", plainest_text(choice));
+    line("error", limit_text(budget.counted(choice.errors), budget) + ", " + basis(choice.bounded));
     if (scene.pixels_untold[0] > 0) line("", other_order_text(choice, budget));
     line("speed", speed_text(choice));
-    line("search", counted(choice.candidates.size(), "setting") + ", " +
-                       counted(choice.draws, "frame") + ", " + fixed(choice.took_ms / 1000, 1) +
-                       " s; times within " + fixed(100 * (Chooser::as_fast - 1), 0) +
-                       " % count as equal");
+    line("search", search_text(choice));
     line("others", std::string(choice.met ? "time against the chosen one, and " : "") +
                        (is_psnr ? "PSNR at least" : "error at most"));
     print_others(choice, budget, out);
@@ -251,20 +303,25 @@ void print(const Choice& choice, const Budget& budget, const KeptBudget& kept, s
 }
 
 nlohmann::ordered_json json_of(const Choice& choice, const Budget& budget, const KeptBudget& kept) {
-    constexpr const char* fates[] = {"chosen", "over budget", "as fast",
-                                     "slower", "not needed",  "failed"};
+    constexpr const char* fates[] = {"chosen",     "over budget", "as fast",    "slower",
+                                     "not needed", "failed",      "not reached"};
     nlohmann::ordered_json json;
     json["budget"] = budget.text();
+    json["strict"] = budget.strict;
     json["met"] = kept.met();
+    json["verdict"] = kept.verdict();
+    json["undecided_pixels"] = kept.undecided_pixels();
     json["setting"] = text(choice.setting);
     json["error"] = json_of(choice.errors.told);
     json["error_with_any_order"] = json_of(choice.errors.all);
     json["bounded"] = choice.bounded;
-    json["fastest_ms"] = choice.fastest_ms;
+    json.update(json_of(choice.times));
+    json["turns"] = choice.turns;
     json["exact_times"] = nullptr;
     if (choice.exact_times) json["exact_times"] = *choice.exact_times;
     json["draws"] = choice.draws;
     json["took_ms"] = choice.took_ms;
+    json["not_reached"] = choice.count(Fate::not_reached);
     json["scene"] = {{"pixels", choice.scene.pixels},
                      {"fragments", choice.scene.fragments},
                      {"nonempty_pixels", choice.scene.nonempty_pixels},
@@ -281,13 +338,15 @@ nlohmann::ordered_json json_of(const Choice& choice, const Budget& budget, const
         if (candidate.error) entry["error"] = json_of(*candidate.error);
         if (candidate.fastest_ms) entry["fastest_ms"] = *candidate.fastest_ms;
         if (candidate.times_leader) entry["times_leader"] = *candidate.times_leader;
+        if (candidate.times) entry.update(json_of(*candidate.times));
         if (candidate.times_chosen) entry["times_chosen"] = *candidate.times_chosen;
         if (!candidate.failure.empty()) entry["failure"] = candidate.failure;
         json["candidates"].push_back(entry);
     }
-    json["frames"] = {{"drawn", kept.frames()},    {"changed", kept.changed()},
-                      {"checked", kept.checked()}, {"chosen_again", kept.chosen_again()},
-                      {"over_at", kept.over()},    {"worst", json_of(kept.worst().told)}};
+    json["frames"] = {
+        {"drawn", kept.frames()},    {"changed", kept.changed()},
+        {"checked", kept.checked()}, {"chosen_again", kept.chosen_again()},
+        {"over_at", kept.over()},    {"worst", json_of(budget.counted(kept.worst()))}};
     return json;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <iosfwd>
+#include <string>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -16,8 +17,13 @@ class KeptBudget {
 public:
     void add(const Keeper::Drawn& drawn, double time, const Budget& budget);
 
-    /// No frame that was checked is over the budget.
+    /// No frame that was checked is over the budget; undecided pixels count where it is strict.
     [[nodiscard]] bool met() const { return over_.empty(); }
+    /// Undecided pixels that may be over the limit: of the frame that has the most, where they do
+    /// not count and keep the frame from being within the budget.
+    [[nodiscard]] std::uint64_t undecided_pixels() const { return undecided_pixels_; }
+    /// "met", "met except 1 undecided pixel" or "not met".
+    [[nodiscard]] std::string verdict() const;
     [[nodiscard]] std::uint32_t frames() const { return frames_; }
     /// Frames that show another moment than the one before.
     [[nodiscard]] std::uint32_t changed() const { return changed_; }
@@ -32,6 +38,7 @@ public:
 
 private:
     std::uint32_t frames_ = 0, changed_ = 0, checked_ = 0, chosen_again_ = 0, first_over_ = 0;
+    std::uint64_t undecided_pixels_ = 0;
     std::vector<double> over_;
     PictureErrors worst_;
 };

@@ -79,8 +79,8 @@ struct Chooser::Contender {
     Frame frame;
     Renderer renderer;
     PictureErrors errors = {};
-    support::Least least = {};
-    std::vector<double> round_ms = {};  ///< the least until the end of each round of the play-off
+    support::Least least = {};       ///< until the play-off
+    std::vector<double> turns = {};  ///< frame times of the play-off
 
     Contender(const cellist::Device& device, const Frame& of, const Candidate& drawn)
         : candidate(drawn),
@@ -88,6 +88,10 @@ struct Chooser::Contender {
           renderer(device, frame, *drawn.setting.method) {}
 
     [[nodiscard]] double ms() const { return least.ms(); }
+    /// Of the first turns.
+    [[nodiscard]] double median_ms(std::size_t count) const {
+        return support::median({turns.begin(), turns.begin() + static_cast<std::ptrdiff_t>(count)});
+    }
 };
 
 /// One search: the settings that are left, and what became of the others.
@@ -97,12 +101,11 @@ public:
         : device_(chooser.device_),
           frame_(chooser.frame_),
           budget_(chooser.budget_),
-          progress_(chooser.progress_),
+          search_(chooser.search_),
           survey_(chooser.survey_) {}
 
     Choice run() {
-        const support::Stopwatch stopwatch;
-        progress_(0);
+        search_.progress(0);
         choice_.scene = survey_.measure(frame_);
         choice_.draws = 1;
         const std::vector<Setting> settings = settings_for(frame_, choice_.scene.longest);
@@ -120,13 +123,13 @@ public:
                 in_order.push_back(setting);
         in_order.insert(in_order.end(), others.begin(), others.end());
         for (std::size_t i = 1; i < in_order.size(); ++i) {
-            progress_(static_cast<double>(i) / static_cast<double>(in_order.size()));
+            search_.progress(static_cast<double>(i) / static_cast<double>(in_order.size()));
             consider(in_order[i]);
         }
         play_off();
         finish();
-        progress_(1);
-        choice_.took_ms = stopwatch.ms();
+        search_.progress(1);
+        choice_.took_ms = stopwatch_.ms();
         return std::move(choice_);
     }
 
@@ -139,7 +142,7 @@ private:
         const auto bound = setting.method->bound(choice_.scene, setting.quality);
         Candidate candidate{.setting = setting, .error = bound, .bounded = bound.has_value()};
         // No picture can be told to be nearer to the truth than that which it is compared with.
-        if (!budget_.met_by(choice_.scene.exact)) candidate.fate = Fate::over_budget;
+        if (!budget_.met_by(exact_error())) candidate.fate = Fate::over_budget;
         // A bound of float nodes is what is left out, and little more.
         else if (bound && setting.quality.format == NodeFormat::float32 && !budget_.met_by(*bound))
             candidate.fate = Fate::over_budget;
@@ -148,10 +151,18 @@ private:
             candidate.fate = Fate::not_needed;
         else if (is_predicted_slow(setting))
             candidate.fate = Fate::slower;
+        else if (is_over_time())
+            candidate.fate = Fate::not_reached;
         else
             return draw(setting, bound);
         choice_.candidates.push_back(candidate);
     }
+
+    [[nodiscard]] const PictureError& exact_error() const {
+        return budget_.strict ? choice_.scene.exact_with_order : choice_.scene.exact;
+    }
+
+    [[nodiscard]] bool is_over_time() const { return stopwatch_.ms() > 1000 * search_.seconds; }
 
     [[nodiscard]] bool has_enough(const Setting& setting) const {
         const Series series = series_of(setting);
@@ -186,8 +197,7 @@ private:
         }
         if (slower) return leave(*contender, Fate::slower);
         compare(*contender, bound);
-        const bool met = budget_.met_by(contender->errors.told);
-        if (met) {
+        if (budget_.met_by(contender->errors)) {
             ++met_[{setting.method->name, series_of(setting)}];
             contenders_.push_back(std::move(contender));
             update_best();
@@ -195,16 +205,20 @@ private:
             return;
         }
         leave(*contender, Fate::over_budget);
-        if (!fallback_ || budget_.better(contender->errors.told, fallback_->errors.told))
-            fallback_ = std::move(contender);
+        if (!fallback_ || is_nearer(*contender, *fallback_)) fallback_ = std::move(contender);
     }
 
     void compare(Contender& contender, const std::optional<PictureError>& bound) {
-        contender.errors = survey_.compare(contender.renderer.picture());
+        contender.errors = survey_.compare(contender.renderer.picture(), budget_.pixel_limit());
         Candidate& candidate = contender.candidate;
-        candidate.bounded = bound && !budget_.better(contender.errors.told, *bound);
+        candidate.bounded =
+            bound && !budget_.strict && !budget_.better(contender.errors.told, *bound);
         if (bound) contender.errors.told = lesser(contender.errors.told, *bound);
-        candidate.error = contender.errors.told;
+        candidate.error = budget_.counted(contender.errors);
+    }
+
+    [[nodiscard]] bool is_nearer(const Contender& a, const Contender& b) const {
+        return budget_.better(budget_.counted(a.errors), budget_.counted(b.errors));
     }
 
     // Draws by turns with the fastest so far, and says whether it is slower by this. What else the
@@ -284,34 +298,49 @@ private:
     // Times from before do not count: they were taken at other moments, and not equally often.
     void play_off() {
         bring_back_exact();
-        if (contenders_.size() < 2) return;
-        for (const auto& contender : contenders_) contender->least = {};
-        for (int round = 0; round < rounds && contenders_.size() > 1; ++round) {
-            draw_by_turns(draws_of(best_ms_, std::max(3, 2 << round)));
-            update_best();
-            const double margin = 1 + (first_margin - 1) / (2 << round);
-            const auto out = std::ranges::find_if(
-                contenders_, [&](const auto& contender) { return is_out(*contender, margin); });
-            outpaced_.insert(outpaced_.end(), out, contenders_.end());
-            contenders_.erase(out, contenders_.end());
+        for (int round = 0; round < rounds; ++round) {
+            if (round > 0 && (contenders_.size() < 2 || is_over_time())) return;
+            const double least = round == 0 ? best_ms_ : fastest().median_ms;
+            draw_by_turns(draws_of(least, std::max(3, 2 << round)), round == 0);
+            drop_told_slower(1 + (first_margin - 1) / (2 << round));
         }
     }
 
     // What others gain is told against all layers in float, so these draw one round at least, even
     // where they were found to be slower before.
     void bring_back_exact() {
-        if (!contenders_.empty() && exact_ && budget_.met_by(exact_->errors.told) &&
+        if (!contenders_.empty() && exact_ && budget_.met_by(exact_->errors) &&
             std::ranges::find(contenders_, exact_) == contenders_.end())
             contenders_.push_back(exact_);
     }
 
-    void draw_by_turns(int draws) {
-        for (int turn = 0; turn < draws; ++turn)
+    void draw_by_turns(int turns, bool whole) {
+        for (int turn = 0; turn < turns; ++turn) {
+            if (is_over_time() && !(whole && turn < 3)) return;
             for (const auto& contender : contenders_) {
-                contender->least.add(contender->renderer.draw());
+                contender->turns.push_back(contender->renderer.draw());
                 ++choice_.draws;
             }
-        for (const auto& contender : contenders_) contender->round_ms.push_back(contender->ms());
+        }
+    }
+
+    [[nodiscard]] Spread fastest() const {
+        const auto spread = [](const auto& contender) { return spread_of(contender->turns); };
+        return spread_of((*std::ranges::min_element(contenders_, {}, [&](const auto& contender) {
+                             return spread(contender).median_ms;
+                         }))->turns);
+    }
+
+    void drop_told_slower(double margin) {
+        if (contenders_.empty()) return;
+        const Spread least = fastest();
+        std::erase_if(contenders_, [&](const std::shared_ptr<Contender>& contender) {
+            const Spread times = spread_of(contender->turns);
+            const bool out =
+                times.median_ms > margin * least.median_ms && told_slower(times, least);
+            if (out) outpaced_.push_back(contender);
+            return out;
+        });
     }
 
     void finish() {
@@ -319,16 +348,16 @@ private:
         if (choice_.met)
             crown();
         else if (fallback_)
-            winner_ = std::move(fallback_);
+            time_fallback();
         else
             throw support::InputError("no setting can be drawn: " +
                                       choice_.candidates.front().failure);
         choice_.setting = winner_->candidate.setting;
         choice_.errors = winner_->errors;
         choice_.bounded = winner_->candidate.bounded;
-        choice_.fastest_ms = winner_->ms();
-        if (exact_ && (exact_ == winner_ || !exact_->round_ms.empty()))
-            choice_.exact_times = times_winner(*exact_);
+        choice_.times = spread_of(winner_->turns);
+        choice_.turns = static_cast<std::uint32_t>(winner_->turns.size());
+        if (exact_ && !exact_->turns.empty()) choice_.exact_times = times_winner(*exact_);
         std::ranges::stable_sort(choice_.candidates, {}, [](const Candidate& candidate) {
             if (candidate.times_chosen) return *candidate.times_chosen;
             return candidate.times_leader.value_or(
@@ -336,36 +365,44 @@ private:
         });
     }
 
-    // Of those that are as fast as the fastest, the most accurate wins.
+    // The candidate left before, without times that were taken by turns.
+    void time_fallback() {
+        winner_ = std::move(fallback_);
+        for (int turn = 0; turn < 3; ++turn) winner_->turns.push_back(winner_->renderer.draw());
+        choice_.draws += 3;
+    }
+
     void crown() {
-        const auto is_worse = [&](const auto& a, const auto& b) {
-            return budget_.better(b->errors.told, a->errors.told);
-        };
-        const auto slower = std::ranges::find_if(
-            contenders_, [&](const auto& contender) { return is_out(*contender, as_fast); });
-        winner_ = *std::max_element(contenders_.begin(), slower, is_worse);
+        std::vector<Timed> timed;
+        for (const auto& contender : contenders_)
+            timed.push_back({contender->candidate.setting, spread_of(contender->turns)});
+        winner_ = contenders_.at(plainest_of_fastest(timed));
+        const Spread least = fastest();
         outpaced_.insert(outpaced_.end(), contenders_.begin(), contenders_.end());
         for (const auto& contender : outpaced_) {
+            const Spread times = spread_of(contender->turns);
+            contender->candidate.times = times;
             contender->candidate.times_chosen = times_winner(*contender);
-            leave(*contender, contender == winner_ ? Fate::chosen : fate_beside_winner(*contender));
+            contender->least = {};
+            contender->least.add(times.least_ms);
+            const bool is_left = std::ranges::find(contenders_, contender) != contenders_.end();
+            leave(*contender, contender == winner_                    ? Fate::chosen
+                              : is_left && !told_slower(times, least) ? Fate::as_fast
+                                                                      : Fate::slower);
         }
     }
 
-    // In the rounds that both drew in.
+    // In the turns that both drew in.
     [[nodiscard]] double times_winner(const Contender& contender) const {
-        const std::size_t drawn = contender.round_ms.size();
-        return drawn == 0 ? 1 : contender.ms() / winner_->round_ms.at(drawn - 1);
-    }
-
-    [[nodiscard]] Fate fate_beside_winner(const Contender& contender) const {
-        const bool more_accurate = budget_.better(contender.errors.told, winner_->errors.told);
-        return times_winner(contender) <= as_fast && !more_accurate ? Fate::as_fast : Fate::slower;
+        const std::size_t turns = contender.turns.size();
+        return contender.median_ms(turns) / winner_->median_ms(turns);
     }
 
     const cellist::Device& device_;
     const Frame& frame_;
     const Budget& budget_;
-    const std::function<void(double)>& progress_;
+    const SearchOptions& search_;
+    const support::Stopwatch stopwatch_{};
     Survey& survey_;
     Choice choice_;
     std::vector<std::shared_ptr<Contender>> contenders_;  // within the budget
@@ -381,11 +418,11 @@ private:
 };
 
 Chooser::Chooser(const cellist::Device& device, const Frame& frame, const Budget& budget,
-                 std::function<void(double)> progress)
+                 SearchOptions search)
     : device_(device),
       frame_(frame),
       budget_(budget),
-      progress_(std::move(progress)),
+      search_(std::move(search)),
       survey_(device, frame, layer_counts_of(settings_for(frame, all_layers)),
               epsilons_of(settings_for(frame, all_layers))) {}
 
@@ -408,7 +445,7 @@ double Chooser::draw_changed() {
 PictureErrors Chooser::check() {
     const SceneMeasure scene = survey_.measure(frame_);
     const Setting& setting = winner_->candidate.setting;
-    PictureErrors errors = survey_.compare(winner_->renderer.picture());
+    PictureErrors errors = survey_.compare(winner_->renderer.picture(), budget_.pixel_limit());
     if (const auto bound = setting.method->bound(scene, setting.quality))
         errors.told = lesser(errors.told, *bound);
     return errors;

@@ -16,8 +16,8 @@ bool same_views(const Frame& a, const Frame& b) {
 }  // namespace
 
 Keeper::Keeper(const cellist::Device& device, const Frame& frame, const Budget& budget,
-               std::uint32_t check_every, std::function<void(double)> progress)
-    : chooser_(device, frame, budget, std::move(progress)),
+               std::uint32_t check_every, SearchOptions search)
+    : chooser_(device, frame, budget, std::move(search)),
       budget_(budget),
       check_every_(check_every),
       now_(frame) {
@@ -50,7 +50,7 @@ Keeper::Drawn Keeper::draw() {
         unchecked_ = 0;
         drawn.checked = true;
         errors_ = chooser_.check();
-        if (!budget_.met_by(errors_->told)) {
+        if (!budget_.met_by(*errors_)) {
             choose();
             drawn.chosen_again = true;
             drawn.frame_ms = renderer().draw();

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 
 #include "chooser.hpp"
@@ -27,12 +26,11 @@ public:
         std::optional<PictureErrors> errors = {};
     };
 
-    /// Chooses for the frame as it is. Refers to the device and the frame, which must outlive it; the
-    /// frame may be given other times, and other views of the same size, between calls of draw().
-    /// `progress` is told how far each search is, from 0 to 1.
-    Keeper(
-        const cellist::Device& device, const Frame& frame, const Budget& budget,
-        std::uint32_t check_every = 1, std::function<void(double)> progress = [](double) {});
+    /// Chooses for the frame as it is. Refers to the device and the frame, which must outlive it;
+    /// the frame may be given other times, and other views of the same size, between calls of
+    /// draw().
+    Keeper(const cellist::Device& device, const Frame& frame, const Budget& budget,
+           std::uint32_t check_every = 1, SearchOptions search = {});
 
     /// Draws the frame as it is now. Blocks.
     Drawn draw();

@@ -197,7 +197,8 @@ int run(const oit::Options& options) {
         choosing->update(part);
         if (part == 1) choosing.reset();
     };
-    oit::Keeper keeper(device, frame, *options.budget, options.check_every, show_choosing);
+    oit::Keeper keeper(device, frame, *options.budget, options.check_every,
+                       {.progress = show_choosing, .seconds = options.search_seconds});
     draw_within_budget(report, keeper, frame);
     // The reference is that of all layers.
     write(report, frame, keeper.renderer());

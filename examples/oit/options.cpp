@@ -99,6 +99,10 @@ void refuse_idle_options(const CLI::App& app, const Options& options) {
             name, has_budget,
             "--budget compares settings without " + std::string(name) + ": leave one of them out"};
     };
+    const auto of_budget = [&](const char* name) {
+        return support::IdleOption{name, !has_budget,
+                                   std::string(name) + " is for --budget, which is not given"};
+    };
     const auto of_nodes = [&](const char* name) {
         return support::IdleOption{
             name, !has_nodes,
@@ -117,7 +121,9 @@ void refuse_idle_options(const CLI::App& app, const Options& options) {
         not_compared("--memory"),
         {"--blend", has_budget && options.blend_function,
          "--budget knows no bound of the errors of a function of your own: leave one of them out"},
-        {"--check-every", !has_budget, "--check-every is for --budget, which is not given"},
+        of_budget("--check-every"),
+        of_budget("--search-seconds"),
+        of_budget("--strict"),
         of_nodes("--epsilon"),
         of_nodes("--format"),
         of_frames("--until"),
@@ -140,7 +146,9 @@ Options parse_options(int count, const char* const* arguments) {
     std::string method = options.method, format(name_of(options.quality.format)), layers = "all",
                 epsilon = shortest(options.quality.epsilon);
     std::string reduce = std::to_string(options.quality.reduce), memory, budget,
-                check_every = std::to_string(options.check_every);
+                check_every = std::to_string(options.check_every),
+                search_seconds = shortest(options.search_seconds);
+    bool strict = false;
     std::string until, turn = shortest(options.turn_degrees),
                        frames = std::to_string(options.frames), out = options.out.path().string(),
                        write_reference, write_difference, json;
@@ -163,6 +171,12 @@ Options parse_options(int count, const char* const* arguments) {
         "40dB|1/255");
     add("--check-every", check_every, "of the frames that change, check each N-th for the budget",
         "N");
+    add("--search-seconds", search_seconds,
+        "time to search for a setting within the budget; what was found by then is chosen from",
+        "S");
+    app.add_flag("--strict", strict,
+                 "count undecided pixels, whose order of layers float depths do not tell, as over "
+                 "the budget where either order may be");
     add("--until", until, "time of the last frame, in seconds; the first is at --time", "T");
     add("--turn", turn, "turn the camera from the first frame to the last", "DEGREES");
     app.add_flag("--reference", options.reference,
@@ -191,9 +205,14 @@ Options parse_options(int count, const char* const* arguments) {
     options.json = json;
     check_outputs(options);
     options.reference = options.reference || !write_reference.empty() || !write_difference.empty();
-    if (!budget.empty()) options.budget = parse_budget(budget);
+    if (!budget.empty()) {
+        options.budget = parse_budget(budget);
+        options.budget->strict = strict;
+    }
     options.check_every = static_cast<std::uint32_t>(
         support::read_number("--check-every", check_every, 1, 1'000'000));
+    options.search_seconds =
+        read_between("--search-seconds", search_seconds, 0, 1e6, "seconds from 0 to 1000000");
     if (!until.empty())
         options.until =
             read_between("--until", until, -1e6, 1e6, "seconds from -1000000 to 1000000");

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "budget.hpp"
+#include "chooser.hpp"
 #include "frame_options.hpp"
 #include "picture_name.hpp"
 
@@ -17,6 +17,7 @@ struct Options : FrameOptions {
     std::optional<std::uint64_t> memory_bytes = {};  ///< that the method may take
     std::optional<Budget> budget = {};               ///< chooses method and setting
     std::uint32_t check_every = 1;                   ///< of the frames that change, within a budget
+    double search_seconds = SearchOptions{}.seconds;  ///< as SearchOptions::seconds
     std::optional<double> until = {};  ///< the last frame's time; the first is at `time`
     double turn_degrees = 0;           ///< from the first frame to the last
     bool reference = false;

@@ -242,9 +242,11 @@ nlohmann::ordered_json to_json(const Report& report) {
     json["frames_ms"] = report.times.times;
     json["passes_ms"] = passes_json(report);
     json["check_every"] = nullptr;
+    json["search_seconds"] = nullptr;
     json["budget"] = nullptr;
     if (report.choice) {
         json["check_every"] = options.check_every;
+        json["search_seconds"] = options.search_seconds;
         json["budget"] = json_of(*report.choice, *options.budget, report.kept);
     }
     for (const char* name : compared) json[name] = nullptr;

@@ -111,11 +111,11 @@ public:
           layers_(std::move(layers)),
           epsilons_(std::move(epsilons)),
           source_(device, frame_),
-          compare_(source_.screen_kernel(text(kernels::survey_compare_cl, 2, 2),
+          compare_(source_.screen_kernel(text(kernels::survey_compare_cl, 2, 3),
                                          "survey_compare.cl", "oit_compare")),
           uncertainty_(device, frame_.pixels()),
           figures_(device, groups_of(frame_) * (maxima() + sums())),
-          compared_(device, groups_of(frame_) * 4) {}
+          compared_(device, groups_of(frame_) * 5) {}
     Drawing(const Drawing&) = delete;
     Drawing& operator=(const Drawing&) = delete;
     virtual ~Drawing() = default;
@@ -131,10 +131,12 @@ public:
         return read(Figures(figures_.download(), maxima(), sums()));
     }
 
-    PictureErrors compare(const cellist::Buffer<cl_float4>& picture) {
-        source_.run_on_screen(compare_, picture, uncertainty_, compared_);
-        const Figures figures(compared_.download(), 2, 2);
-        return {figures.claim(0, frame_.pixels()), figures.claim(1, frame_.pixels())};
+    PictureErrors compare(const cellist::Buffer<cl_float4>& picture, double limit) {
+        source_.run_on_screen(compare_, picture, uncertainty_, static_cast<cl_float>(limit),
+                              compared_);
+        const Figures figures(compared_.download(), 2, 3);
+        return {figures.claim(0, frame_.pixels()), figures.claim(1, frame_.pixels()),
+                figures.count(2)};
     }
 
 protected:
@@ -257,8 +259,8 @@ Survey::~Survey() = default;
 
 SceneMeasure Survey::measure(const Frame& frame) { return drawing_->measure(frame); }
 
-PictureErrors Survey::compare(const cellist::Buffer<cl_float4>& picture) {
-    return drawing_->compare(picture);
+PictureErrors Survey::compare(const cellist::Buffer<cl_float4>& picture, double limit) {
+    return drawing_->compare(picture, limit);
 }
 
 }  // namespace oit

@@ -12,12 +12,6 @@
 
 namespace oit {
 
-/// A picture against the truth: the error at most.
-struct PictureErrors {
-    PictureError told;  ///< apart from what depends on an order that float depths do not tell
-    PictureError all;
-};
-
 /// A frame with all layers in float on the device, with bounds of its own error, against which other
 /// pictures of the frame are measured.
 ///
@@ -38,8 +32,10 @@ public:
     /// Draws the frame, which differs from the first in time and views at most. Blocks.
     [[nodiscard]] SceneMeasure measure(const Frame& frame);
 
-    /// Compares another picture of the frame that was measured last. Blocks.
-    [[nodiscard]] PictureErrors compare(const cellist::Buffer<cl_float4>& picture);
+    /// Compares another picture of the frame that was measured last, and counts the undecided
+    /// pixels in which a channel may be off by more than `limit`. Blocks.
+    [[nodiscard]] PictureErrors compare(const cellist::Buffer<cl_float4>& picture,
+                                        double limit = 0);
 
 private:
     class Drawing;

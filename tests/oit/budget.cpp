@@ -11,6 +11,7 @@
 #include "keeper.hpp"
 #include "oit/support/random_scene.hpp"
 #include "reference.hpp"
+#include "scenes.hpp"
 #include "support/catch.hpp"
 #include "support/device.hpp"
 
@@ -75,8 +76,9 @@ TEST_CASE("a search tells how far it is, from 0 to 1") {
     const oit::Scene scene = random_scene(1, {oit::Blend::over});
     const oit::Frame frame{.scene = scene, .views = {view_from(30)}};
     std::vector<double> parts;
-    const oit::Keeper keeper(device(), frame, oit::parse_budget("35dB"), 1,
-                             [&](double part) { parts.push_back(part); });
+    const oit::Keeper keeper(
+        device(), frame, oit::parse_budget("35dB"), 1,
+        {.progress = [&](double part) { parts.push_back(part); }, .seconds = 0});
     REQUIRE(parts.size() > 2);
     CHECK(parts.front() == 0);
     CHECK(parts.back() == 1);
@@ -107,7 +109,7 @@ TEST_CASE("what is chosen meets the budget, also after the view has changed") {
     }
 }
 
-TEST_CASE("times are told against what was chosen, and settings as fast are no more accurate") {
+TEST_CASE("times are told against what was chosen, and settings as fast are not as plain") {
     const oit::Scene scene = random_scene(3, {oit::Blend::over});
     const oit::Frame frame{.scene = scene, .views = {view_from(30)}};
     for (const char* text : {"25dB", "1/255"}) {
@@ -117,9 +119,40 @@ TEST_CASE("times are told against what was chosen, and settings as fast are no m
         for (const oit::Candidate& candidate : choice.candidates) {
             if (candidate.fate != Fate::as_fast) continue;
             INFO(oit::text(candidate.setting));
-            CHECK(candidate.times_chosen.value() <= oit::Chooser::as_fast);
-            CHECK_FALSE(budget.better(candidate.error.value(), choice.errors.told));
+            CHECK(candidate.times.has_value());
+            CHECK(plainer(choice.setting, candidate.setting));
         }
+    }
+}
+
+TEST_CASE("a search that has no time chooses from what it has seen, and says what it has not") {
+    const oit::Scene scene = random_scene(3, {oit::Blend::over});
+    const oit::Frame frame{.scene = scene, .views = {view_from(30)}};
+    const oit::Choice choice =
+        oit::Keeper(device(), frame, oit::parse_budget("25dB"), 1, {.seconds = 0}).choice();
+    CHECK(choice.met);
+    CHECK(oit::text(choice.setting) == oit::text(oit::exact_setting({})));
+    CHECK(choice.turns >= 3);
+    CHECK(choice.count(Fate::not_reached) > 10);
+    for (const oit::Candidate& candidate : choice.candidates)
+        if (candidate.fate == Fate::not_reached) CHECK_FALSE(candidate.fastest_ms.has_value());
+}
+
+TEST_CASE("undecided pixels keep a frame from a strict budget, and are counted for any other") {
+    const oit::Scene scene = oit::find_scene("extreme-coplanar")->make(0.5F);
+    const oit::Frame frame{.scene = scene, .views = {support::frame_unit_sphere({0, 0}, 48, 36)}};
+    for (const char* text : {"1/255", "40dB"}) {
+        INFO(text);
+        oit::Budget budget = oit::parse_budget(text);
+        const oit::Choice choice = oit::Keeper(device(), frame, budget, 1, {.seconds = 0}).choice();
+        CHECK(choice.met);
+        CHECK(choice.errors.undecided_pixels > 0);
+        CHECK(choice.errors.undecided_pixels <= choice.scene.pixels_untold[0]);
+        CHECK_FALSE(budget.met_by(choice.errors.all));
+        budget.strict = true;
+        const oit::Choice strict = oit::Keeper(device(), frame, budget, 1, {.seconds = 0}).choice();
+        CHECK_FALSE(strict.met);
+        CHECK_FALSE(budget.met_by(strict.errors));
     }
 }
 

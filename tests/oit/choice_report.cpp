@@ -35,8 +35,9 @@ oit::Choice choice_of(const oit::Setting& setting, std::uint64_t untold = 0) {
     oit::Choice choice;
     choice.met = true;
     choice.setting = setting;
-    choice.fastest_ms = 2;
-    choice.errors = {off_by(0.5 / 255), off_by(12.0 / 255)};
+    choice.times = {2, 2.1, 2.25, 2.5};
+    choice.turns = 15;
+    choice.errors = {off_by(0.5 / 255), off_by(untold > 0 ? 12.0 / 255 : 0.5 / 255), untold};
     choice.scene.pixels = 100;
     choice.scene.fragments = 1234;
     choice.scene.nonempty_pixels = 50;
@@ -83,21 +84,26 @@ TEST_CASE("speed is told against all layers in float, and not where these were c
 
 TEST_CASE("a setting that is as fast is not called slower, and one that drew before is marked") {
     oit::Choice choice = choice_of(linked());
-    choice.candidates.push_back(
-        {.setting = linked(4), .fate = Fate::as_fast, .fastest_ms = 2, .times_chosen = 1.004});
+    choice.candidates.push_back({.setting = linked(4),
+                                 .fate = Fate::as_fast,
+                                 .fastest_ms = 2,
+                                 .times = oit::Spread{1.8, 1.9, 2, 2.2},
+                                 .times_chosen = 1.004});
     choice.candidates.push_back(
         {.setting = linked(2), .fate = Fate::slower, .fastest_ms = 3, .times_leader = 1.4});
     const std::string text = screen(choice, budget_of("1/255"));
     const std::string as_fast = line_with(text, "--layers 4"),
                       slower = line_with(text, "--layers 2");
     CHECK(contains(as_fast, " 1.00 times"));
-    CHECK(contains(as_fast, "as fast, no more accurate"));
+    CHECK(contains(as_fast, "as fast, not as plain (1.90 to 2.20 ms)"));
+    CHECK(contains(text, "times do not tell one other setting from the fastest: the plainest is"));
     CHECK_FALSE(contains(as_fast, "slower"));
     CHECK(contains(slower, "about 1.40 times"));
     CHECK(contains(slower, "slower"));
     const nlohmann::ordered_json json =
         oit::json_of(choice, budget_of("1/255"), kept_for(choice, budget_of("1/255")));
     CHECK(json["candidates"][1]["fate"] == "as fast");
+    CHECK(json["candidates"][1]["lower_quartile_ms"] == 1.9);
     CHECK(json["candidates"][2]["fate"] == "slower");
 }
 
@@ -123,10 +129,48 @@ TEST_CASE("settings that are not shown are counted") {
 TEST_CASE("the pixels whose order float does not tell stand beside their error") {
     const std::string line =
         line_with(screen(choice_of(linked(), 1), budget_of("1/255")), "float does");
-    CHECK(contains(line, "in 1 pixel float"));
-    CHECK(contains(line, "12.00/255 at most"));
-    CHECK(contains(screen(choice_of(linked(), 1200), budget_of("1/255")), "in 1,200 pixels float"));
+    CHECK(contains(line, "in 1 undecided pixel float"));
+    CHECK(contains(line, "12.00/255 at most, over 1/255 in 1"));
+    CHECK(contains(screen(choice_of(linked(), 1200), budget_of("1/255")),
+                   "in 1,200 undecided pixels float"));
     CHECK_FALSE(contains(screen(choice_of(linked(), 0), budget_of("1/255")), "the other order"));
+}
+
+TEST_CASE("the chosen setting has the spread of its times beside it") {
+    const std::string line = line_with(screen(choice_of(linked()), budget_of("1/255")), "chosen  ");
+    CHECK(contains(line, "2.25 ms (half of 15 frames in 2.10 to 2.50 ms)"));
+    CHECK_FALSE(contains(screen(choice_of(linked()), budget_of("1/255")), "plainest"));
+}
+
+TEST_CASE("a budget is met, met except undecided pixels, or not met") {
+    const auto verdict_of = [](std::uint64_t untold, const char* text, bool strict) {
+        oit::Budget budget = budget_of(text);
+        budget.strict = strict;
+        const oit::Choice choice = choice_of(linked(), untold);
+        const oit::KeptBudget kept = kept_for(choice, budget);
+        const nlohmann::ordered_json json = oit::json_of(choice, budget, kept);
+        CHECK(json["verdict"] == kept.verdict());
+        CHECK(json["met"] == kept.met());
+        CHECK(json["strict"] == strict);
+        CHECK(contains(line_with(screen(choice, budget), "budget  "), kept.verdict()));
+        return kept.verdict();
+    };
+    CHECK(verdict_of(0, "1/255", false) == "met");
+    CHECK(verdict_of(0, "1/255", true) == "met");
+    CHECK(verdict_of(1, "1/255", false) == "met except 1 undecided pixel");
+    CHECK(verdict_of(1200, "40dB", false) == "met except 1,200 undecided pixels");
+    CHECK(verdict_of(1, "1/255", true) == "not met");
+    CHECK(verdict_of(1, "20/255", true) == "met");
+    CHECK(verdict_of(1, "0.2/255", false) == "not met");
+}
+
+TEST_CASE("what a search had no time for is counted") {
+    oit::Choice choice = choice_of(linked());
+    choice.candidates.push_back({.setting = linked(4), .fate = Fate::not_reached});
+    choice.candidates.push_back({.setting = linked(8), .fate = Fate::not_reached});
+    CHECK(contains(line_with(screen(choice, budget_of("1/255")), "search"),
+                   "the time was over before 2 settings: raise --search-seconds"));
+    CHECK(oit::json_of(choice, budget_of("1/255"), {})["not_reached"] == 2);
 }
 
 TEST_CASE("a budget below what can be proven is told apart from one that no setting meets") {

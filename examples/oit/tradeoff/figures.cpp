@@ -37,7 +37,8 @@ void print_settings(const Sweep& sweep, std::ostream& out) {
     }
     const double equal = equally_fast - 1, spread = typical_spread(sweep.measurements);
     out << " * nothing here is both as fast, within " << fixed(100 * equal, 0)
-        << " %, and as accurate; error: the largest of any channel\n"
+        << " % or with spreads that overlap, and as accurate\n"
+           "   error: the largest of any channel\n"
            " +-%: half of the frames differ from the median by no more\n";
     if (spread > equal)
         out << " The times are uncertain: those of half the settings spread by "
@@ -57,7 +58,7 @@ void print_fewer_layers(const Sweep& sweep, std::ostream& out) {
     const std::vector<Relation> relations = fewer_layers(sweep);
     if (relations.empty()) return;
     out << "\nNearest layers against all " << sweep.most_layers
-        << "\n     layers  speed-up           of half  PSNR dB\n";
+        << "\n     layers  speed-up      by quartiles  PSNR dB\n";
     for (const Relation& relation : relations)
         out << std::setw(11) << *relation.measurement->setting.quality.layers << std::setw(10)
             << fixed(relation.factor, 2) << std::setw(18) << quartiles(relation) << std::setw(9)
@@ -68,7 +69,7 @@ void print_exact_methods(const Sweep& sweep, std::ostream& out) {
     const std::vector<Relation> relations = exact_methods(sweep);
     if (relations.size() < 2) return;
     out << "\nExact methods against linked, nodes of floats\n"
-           "         ms  times as long           of half\n";
+           "         ms  times as long      by quartiles\n";
     for (const Relation& relation : relations) {
         const Measurement& m = *relation.measurement;
         out << std::setw(11) << fixed(m.milliseconds, 2) << std::setw(15)

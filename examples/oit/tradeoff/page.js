@@ -68,7 +68,7 @@ fillTable(byId("layers"), layers, [
     ["layers", row => row.layers, row => row.layers],
     ["time, ms", row => column(row.ms), row => row.ms],
     ["speed-up", row => column(row.speed_up), row => row.speed_up],
-    ["half within", row => range(row.speed_up_least, row.speed_up_most)],
+    ["by quartiles", row => range(row.speed_up_least, row.speed_up_most)],
     ["", untold],
     ["PSNR, dB", row => decibels(row.psnr_db), row => row.psnr_db],
     ["SSIM", row => row.ssim.toFixed(5), row => row.ssim],
@@ -79,7 +79,7 @@ fillTable(byId("exact"), figures.exact_methods, [
     ["method", row => row.method],
     ["time, ms", row => column(row.ms), row => row.ms],
     ["times as long as linked", row => row.times_linked.toFixed(2), row => row.times_linked],
-    ["half within", row => range(row.times_linked_least, row.times_linked_most)],
+    ["by quartiles", row => range(row.times_linked_least, row.times_linked_most)],
     ["", row => row.method === "linked" ? "" : untold(row)],
     ["MB", row => column(row.bytes / 1e6), row => row.bytes],
 ]);
