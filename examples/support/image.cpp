@@ -51,17 +51,24 @@ double noise(std::uint32_t counter) {
     return static_cast<double>((word >> 22) ^ word) * 0x1p-32;
 }
 
+bool are_equal(const cl_float4& a, const cl_float4& b) {
+    return a.s[0] == b.s[0] && a.s[1] == b.s[1] && a.s[2] == b.s[2];
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> srgb_bytes(std::span<const cl_float4> pixels) {
     std::vector<std::uint8_t> bytes;
     bytes.reserve(pixels.size() * 3);
-    for (const cl_float4& pixel : pixels)
-        for (int channel = 0; channel < 3; ++channel) {
-            const double encoded = srgb_from_linear(static_cast<double>(pixel.s[channel]));
-            const double dither = noise(static_cast<std::uint32_t>(bytes.size()));
-            bytes.push_back(static_cast<std::uint8_t>(std::min(255.0, 255 * encoded + dither)));
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        const bool is_flat = (i > 0 && are_equal(pixels[i], pixels[i - 1])) ||
+                             (i + 1 < pixels.size() && are_equal(pixels[i], pixels[i + 1]));
+        for (const cl_float value : {pixels[i].s[0], pixels[i].s[1], pixels[i].s[2]}) {
+            const double encoded = srgb_from_linear(static_cast<double>(value));
+            const double up = is_flat ? noise(static_cast<std::uint32_t>(bytes.size())) : 0.5;
+            bytes.push_back(static_cast<std::uint8_t>(std::min(255.0, 255 * encoded + up)));
         }
+    }
     return bytes;
 }
 

@@ -13,9 +13,9 @@ namespace support {
 /// The sRGB encoding of a linear value, both clamped to 0 ... 1. NaN becomes 0.
 [[nodiscard]] double srgb_from_linear(double linear);
 
-/// Red, green and blue of linear pixels in 8-bit sRGB, dithered so that gradients show no bands: the
-/// mean over many pixels is right, and a byte is off by less than 1. Depends on a pixel's value and
-/// index alone.
+/// Red, green and blue of linear pixels in 8-bit sRGB. Pixels that equal a neighbour are dithered, so
+/// that backgrounds show no bands: the mean over many is right, and a byte is off by less than 1. All
+/// others are rounded. Equal pixels make equal bytes.
 [[nodiscard]] std::vector<std::uint8_t> srgb_bytes(std::span<const cl_float4> pixels);
 
 /// The bytes of a PNG file with an image of 3 bytes a pixel, row by row from the top.

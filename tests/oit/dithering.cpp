@@ -1,4 +1,4 @@
-// 8-bit pictures are dithered: gradients have no bands, and means are right.
+// Flat parts of 8-bit pictures are dithered: backgrounds have no bands, and means are right.
 #include <cmath>
 #include <cstdlib>
 #include <vector>
@@ -22,6 +22,19 @@ TEST_CASE("a byte is off by less than 1, and the mean of many is right") {
         }
         CHECK(std::abs(sum / static_cast<double>(bytes.size()) - exact) < 0.01);
         CHECK(bytes == support::srgb_bytes(pixels));
+    }
+}
+
+TEST_CASE("pixels that differ from their neighbours are rounded") {
+    std::vector<cl_float4> pixels;
+    for (int i = 0; i < 1000; ++i) {
+        const float linear = static_cast<float>(i % 500) / 500;
+        pixels.push_back({{linear, 0.3F, 1 - linear, 1}});
+    }
+    const std::vector<std::uint8_t> bytes = support::srgb_bytes(pixels);
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        const auto linear = static_cast<double>(pixels[i / 3].s[i % 3]);
+        CHECK(bytes[i] == std::lround(255 * support::srgb_from_linear(linear)));
     }
 }
 
