@@ -228,7 +228,7 @@ public:
         });
         return {state->done.event(), [state, shape = shape()] {
                     state->done.wait();
-                    state->records = detail::host_memory<T>(state->offsets.back());
+                    state->records.resize(state->offsets.back());
                     return HostLists<T>(shape, {state->offsets.begin(), state->offsets.end()},
                                         std::move(state->records));
                 }};
