@@ -340,8 +340,6 @@ void FrameArguments::read(FrameOptions& options) const {
          "--depth-range needs several samples: add --samples 2, 4 or 8"},
         {"--alpha", scene != nullptr && !scene->takes_alpha,
          "--alpha: the surfaces of '" + options.scene + "' have opacities of their own"},
-        {"--alpha", options.blend == Blend::absorb,
-         "--alpha: media absorb by their depth, so leave out --alpha or --blend absorb"},
         {"--resolve", one_sample, "--resolve needs several samples: add --samples 2, 4 or 8"},
     };
     support::refuse_idle_options(app_, idle);

@@ -53,7 +53,6 @@ TEST_CASE("bad arguments are refused") {
              {"--resolve sample", "--samples"},
              {"--resolve pixel", "--samples"},
              {"--time 1", "nothing moves"},
-             {"--alpha 0.5 --blend absorb", "absorb by their depth"},
              {"--until 1", "nothing moves"},
              {"--budget 40dB --check-every 2", "--until or --turn"},
              {"--out a.gif", ".exr"},
