@@ -31,7 +31,8 @@ glm::dvec3 light_of(Fragments fragments, const std::vector<std::size_t>& order,
     glm::dvec3 sum(0);
     for (std::size_t sample = 0; sample < samples; ++sample) {
         oit::ReferenceLight light(1, options);
-        for (const std::size_t i : order) light.add(fragments[i], sample);
+        for (const std::size_t i : order)
+            if ((fragments[i].coverage >> sample & 1) != 0) light.add(fragments[i]);
         sum += light.end(glm::dvec3(0), std::numeric_limits<double>::infinity());
     }
     return sum / static_cast<double>(samples);
