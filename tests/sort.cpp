@@ -118,7 +118,7 @@ TEST_CASE("an expression that does not compile ends in an error with the compile
     Lists<Item> lists(device(), {10});
     const Inserts<Item> inserts = random_inserts(144, 10, random);
     Inserter(lists).build(lists, inserts);
-    for (const char* expression : {"record.no_such_member", "record.key +* 3", ""}) {
+    for (const char* expression : {"record.no_such_member", "record.key + + / 3", ""}) {
         const auto error = error_of<OpenClError>([&] { lists.sort_by(expression); });
         INFO(error.what());
         REQUIRE(error.call() == "clBuildProgram");
