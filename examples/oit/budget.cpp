@@ -41,7 +41,7 @@ std::optional<double> fraction(std::string_view text) {
     return *numerator / *denominator;
 }
 
-// What stands before "dB", in any case of letters and with spaces between them or not.
+// The text before "dB", which may be in upper or lower case and after spaces.
 std::optional<std::string_view> before_unit(std::string_view text) {
     if (text.size() < 2) return {};
     const std::string_view unit = text.substr(text.size() - 2);

@@ -85,7 +85,7 @@ void check_outputs(const Options& options) {
         if (!picture.empty()) (void)support::image_format(picture);
 }
 
-// What does nothing beside the other options, or contradicts them.
+// Options that have no effect with the other options, or contradict them.
 void refuse_idle_options(const CLI::App& app, const Options& options) {
     const bool has_budget = options.budget.has_value(), one_frame = options.frames == 1;
     const bool has_nodes = method_named(options.method).has_nodes;

@@ -180,7 +180,7 @@ Mesh clean_mesh(const Mesh& source) {
         }
     }
     merge_vertices(source, mesh);
-    // Only normals from elsewhere turn triangles: those made here follow them.
+    // Only normals from the file reverse triangles. Normals that are computed here follow the triangles.
     turn_towards_normals(mesh);
     complete_normals(mesh);
     // Coincident triangles then start at the same corner, whatever their winding, and the

@@ -9,7 +9,7 @@
 namespace support {
 namespace {
 
-// Zeros that an accessor may have without a byte in the file, so that a small file stays small.
+// Zeros that an accessor may have without a byte in the file. Bounds the memory for a small file.
 constexpr std::size_t limit_zeros_bytes = std::size_t{1} << 28;
 
 constexpr std::array<std::pair<std::string_view, std::size_t>, 7> shape_components = {
@@ -64,7 +64,7 @@ std::string name_of(GltfFormat format) {
            (format.is_normalized ? " (normalized)" : "");
 }
 
-// The bytes of `count` elements, `stride` apart, which a view has to hold from `offset` on.
+// The bytes of `count` elements, `stride` apart, from `offset` on. Throws if the view is too short.
 std::string_view view_bytes(GltfFile& file, const GltfValue& place, std::size_t element_bytes,
                             std::size_t count, std::size_t& stride) {
     const GltfValue view = file.element("bufferViews", place.at("bufferView"));

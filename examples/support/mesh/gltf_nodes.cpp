@@ -77,7 +77,7 @@ GltfNodes place_gltf_nodes(const GltfFile& file, std::vector<std::string>& notes
     std::vector<std::size_t> roots, stack;
     for (std::size_t i = 0; i < count; ++i)
         if (!has_parent[i]) roots.push_back(i);
-    // Every node has one parent at most, so those that no root reaches form circles.
+    // Every node has at most one parent, so the nodes that no root reaches form cycles.
     std::size_t reached = 0;
     for (stack = roots; !stack.empty(); ++reached) {
         const std::size_t node = stack.back();

@@ -61,7 +61,7 @@ glm::dmat4 GltfSkin::matrix_of(std::size_t vertex) const {
             matrix += joints_[set.joints.index(vertex, i)] * weight;
             sum += weight;
         }
-    // Weights add up to 1 but for rounding.
+    // The sum of the weights is 1 except for rounding.
     if (sum > 0) return matrix / sum;
     const std::size_t first = influences_[0].joints.index(vertex);
     return joints_[std::min(first, joints_.size() - 1)];

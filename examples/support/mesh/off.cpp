@@ -10,8 +10,8 @@
 namespace support {
 namespace {
 
-// Geomview's object file format, in text. A vertex and a face stand on a line each; files without
-// colours may also separate all numbers by blanks alone.
+// Reads Geomview's object file format, in text. Each vertex and each face is on a line of its own; in
+// files without colours, only blanks need separate the numbers.
 class OffReader {
 public:
     OffReader(const std::filesystem::path& path, const std::string& text)
@@ -23,7 +23,7 @@ public:
         read_header();
         vertex_count_ = read_count("vertices");
         face_count_ = read_count("faces");
-        // The number of edges means nothing and may be missing.
+        // The number of edges is not used, and may be missing.
         if (!words_.at_line_end()) (void)read_count("edges");
         has_row_a_line_ = first_vertex_ends_line() || words_.has_lines(vertex_count_ + face_count_);
         for (std::uint64_t i = 0; i < vertex_count_; ++i) read_vertex(i);
@@ -100,7 +100,7 @@ private:
         return *value;
     }
 
-    // A colour is raw until all are known: see use_colours().
+    // The colours of the file, whose range is known only when all are read: see use_colours().
     glm::vec4 read_colour(std::size_t channels) {
         glm::vec4 colour(0, 0, 0, no_alpha);
         for (std::size_t i = 0; i < channels; ++i) {

@@ -35,7 +35,7 @@ bool is_text(std::string_view text) {
     (void)words.rest_of_line();
     const std::string_view next = words.next_word();
     if (same_word(next, "facet") || same_word(next, "endsolid")) return true;
-    // The number of triangles of a binary file has a byte of 0.
+    // A binary file has a zero byte in its number of triangles.
     return text.substr(0, header_bytes).find('\0') == std::string_view::npos;
 }
 
