@@ -148,7 +148,7 @@ void Build::check_bystanders() {
         throw Error("the " + bystander->description + " (" + uses + ") refused " +
                     std::to_string(after - before) + " inserts" +
                     (passes > 1 ? " in " + std::to_string(passes) + " passes" : std::string()) +
-                    ", for they are no part of the build: name all containers that the "
+                    ", because they are no part of the build: name all containers that the "
                     "kernels fill, as in cellist::build(function, lists, other_lists)");
     }
 }

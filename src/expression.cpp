@@ -66,9 +66,8 @@ struct Bracket {
 
 [[noreturn]] void refuse(std::string_view text, std::size_t at, const std::string& what) {
     throw Error("an expression has " + what + " at character " + std::to_string(at + 1) +
-                ", but must be one OpenCL C expression, of names, numbers, operators and calls, "
-                "that writes "
-                "nothing and uses no pointers: " +
+                ", but must be one OpenCL C expression of names, numbers, operators and calls, "
+                "without writes and pointers: " +
                 std::string(text));
 }
 

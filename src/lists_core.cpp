@@ -115,12 +115,13 @@ void ListsCore::add_to(Arguments& arguments) const {
 }
 
 void ListsCore::refuse_orphan(const std::shared_ptr<ListsCore>& self) {
-    if (self.use_count() == 1) throw Error("the lists went before their build was finished");
+    if (self.use_count() == 1)
+        throw Error("the lists were destroyed before their build was finished");
 }
 
 void ListsCore::refuse_while_open() const {
     if (storage_->is_open())
-        throw Error("a container is used while it is built: kernels may insert, and no more");
+        throw Error("a container is used while it is built: only kernels may, to insert records");
 }
 
 bool ListsCore::is_open() const { return storage_->is_open(); }

@@ -296,8 +296,8 @@ void ArgumentCheck::operator()(std::size_t index, const Parameter& parameter,
         if (parameter.image != 0 && found.object != parameter.image)
             fail(image_name(parameter.image), image_name(found.object));
         if (parameter.image != 0 && holds_depths(found.memory) != parameter.is_depth)
-            fail(parameter.is_depth ? "an image of depths" : "an image of colours",
-                 parameter.is_depth ? "an image of colours" : "an image of depths");
+            fail(parameter.is_depth ? "a depth image" : "a colour image",
+                 parameter.is_depth ? "a colour image" : "a depth image");
         const auto flags = memory_info<cl_mem_flags>(found.memory, CL_MEM_FLAGS);
         const auto access = parameter.access;
         if ((flags & CL_MEM_READ_ONLY) != 0 && access != CL_KERNEL_ARG_ACCESS_READ_ONLY)

@@ -158,7 +158,7 @@ void ListSorter::read_state(Sort& sort) const {
         throw Error(sort.linked
                         ? "lists cannot be sorted: links lead out of the pool, in circles, or from "
                           "several lists to the same nodes (Lists::validate() finds them)"
-                        : "lists cannot be sorted: some end before they begin, or after the pool "
+                        : "lists cannot be sorted: some end before they begin, or outside the pool "
                           "(Lists::validate() finds them)");
 }
 

@@ -137,7 +137,7 @@ std::string dropped_text(const MeshDrops& drops) {
     add(drops.nonfinite_triangles, "with NaN or infinite vertices");
     add(drops.out_of_range_triangles, "with indices out of range");
     add(drops.degenerate_triangles, "degenerate");
-    add(drops.unsplit_polygons, "polygons that cross themselves or are too intricate");
+    add(drops.unsplit_polygons, "polygons that cross themselves or are too complex");
     add(drops.points_and_lines, "points or lines");
     add(drops.bytes_after_end, "bytes after the end");
     return text.empty() ? "" : " (dropped: " + text + ")";

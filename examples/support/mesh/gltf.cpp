@@ -165,7 +165,7 @@ private:
         const GltfValue accessor = file_.element("accessors", position);
         if (!accessor.find("bufferView"))
             primitive.fail(
-                "has data for the extension 'KHR_draco_mesh_compression' only, which "
+                "has data only for the extension 'KHR_draco_mesh_compression', which "
                 "this program does not support");
     }
 
@@ -328,7 +328,7 @@ private:
         charge(primitive, 3 * corners);
         if (mode == 4 && corners % 3 != 0)
             primitive.fail("has " + std::to_string(corners) +
-                           " corners of triangles, which is no multiple of 3");
+                           " corners of triangles, which is not a multiple of 3");
         const std::uint32_t material = use_material(primitive);
         const std::size_t triangles =
             mode == 4 ? corners / 3 : std::max<std::size_t>(corners, 2) - 2;

@@ -142,7 +142,7 @@ void GltfAccessor::replace_sparse(GltfFile& file, const GltfValue& sparse) {
                                   false};
     if (index_format.type != GltfType::uint8 && index_format.type != GltfType::uint16 &&
         index_format.type != GltfType::uint32)
-        indices.at("componentType").fail("is no type of indices");
+        indices.at("componentType").fail("is not an index type");
     std::size_t index_stride = 0, value_stride = 0;
     const std::string_view index_bytes =
         view_bytes(file, indices, bytes_of(index_format.type), replaced, index_stride);
@@ -152,7 +152,7 @@ void GltfAccessor::replace_sparse(GltfFile& file, const GltfValue& sparse) {
         const auto index = static_cast<std::size_t>(
             load_number(index_bytes.data() + i * index_stride, index_format));
         if (index >= size_)
-            indices.fail("replaces element " + std::to_string(index) + ", the accessor has " +
+            indices.fail("names element " + std::to_string(index) + ", the accessor has " +
                          std::to_string(size_));
         std::memcpy(owned_.data() + index * element_bytes_, value_bytes.data() + i * value_stride,
                     element_bytes_);

@@ -233,7 +233,7 @@ std::string_view GltfFile::load_buffer(const GltfValue& buffer, std::size_t numb
         std::string data = percent_decoded(text.substr(comma + 1));
         if (text.substr(0, comma).ends_with(";base64")) {
             std::optional<std::string> decoded = base64_decoded(data);
-            if (!decoded) uri->fail("has characters that are not of base64");
+            if (!decoded) uri->fail("has characters that base64 does not allow");
             data = *std::move(decoded);
         }
         bytes = std::move(data);

@@ -40,7 +40,7 @@ GltfSkin::GltfSkin(GltfFile& file, const std::vector<glm::dmat4>& joints,
             {file, *joint_index, {"VEC4"}, {{GltfType::uint8, false}, {GltfType::uint16, false}}},
             {file, *weight_index, {"VEC4"}, {gltf_float32, gltf_unit_uint8, gltf_unit_uint16}}};
         if (set.joints.size() != vertices || set.weights.size() != vertices)
-            joint_index->fail("has another count than POSITION");
+            joint_index->fail("does not have as many elements as POSITION");
         for (std::size_t v = 0; v < vertices; ++v)
             for (std::size_t i = 0; i < 4; ++i)
                 if (set.joints.index(v, i) >= joints.size() && set.weights.number(v, i) != 0)

@@ -92,7 +92,7 @@ private:
             fail("'" + std::string(keyword) + "' runs another file, which is not supported");
         } else if (!ignored_statements.contains(keyword) &&
                    !free_form_statements.contains(keyword)) {
-            fail("'" + printable(keyword) + "' is no statement of an OBJ file");
+            fail("'" + printable(keyword) + "' is not an OBJ statement");
         }
     }
 
@@ -122,7 +122,8 @@ private:
         colours_.resize(positions_.size(), glm::vec4(no_colour));
         for (std::size_t i = 4; i <= values; ++i) {
             const float value = number(i);
-            if (!(value >= 0)) fail("a colour is '" + printable(words_[i]) + "', the least is 0");
+            if (!(value >= 0))
+                fail("a colour is '" + printable(words_[i]) + "', it must be 0 or more");
             colours_.back()[static_cast<int>(i) - 4] = value;
             if (i < 7) greatest_colour_ = std::max(greatest_colour_, value);
         }
@@ -219,7 +220,7 @@ private:
         if (!path)
             note(shown + " is not in the mesh's folder and was not read");
         else if (!std::filesystem::is_regular_file(*path, error))
-            note(shown + " does not exist or is no regular file");
+            note(shown + " does not exist or is not a regular file");
         else if (read_mtl(*path, library_))
             note(shown + " ends within a line and may be cut off");
     }
@@ -323,7 +324,7 @@ private:
             if (count > 0) mesh_.notes.push_back(what + ": " + std::to_string(count));
         };
         add("free-form curves and surfaces, which are not drawn", free_forms_);
-        add("vertices with a weight other than 1, which polygons ignore", weights_);
+        add("vertices with a weight other than 1, which is ignored", weights_);
         add("corners that name a normal that does not exist, so that theirs is made",
             missing_normals_);
     }

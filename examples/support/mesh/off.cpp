@@ -66,7 +66,7 @@ private:
         if (word == "4OFF" || word == "nOFF" || word == "4nOFF")
             fail("has the header '" + name + "': vertices of 4 and more dimensions are not read");
         if (word != "OFF" && word != "off")
-            fail("has '" + printable(name) + "' where the header 'OFF' has to be");
+            fail("has '" + printable(name) + "' instead of the header 'OFF'");
         ahead = words_;
         if (ahead.next_word() == "BINARY") fail("says BINARY: only OFF files in text are read");
     }
@@ -77,7 +77,7 @@ private:
             throw InputError(quoted("mesh", path_) + " is truncated: it has no number of " + what);
         const auto count = parse_integer(word);
         if (!count || *count < 0)
-            fail("has '" + printable(word) + "' where the number of " + what + " has to be");
+            fail("has '" + printable(word) + "' instead of the number of " + what);
         return static_cast<std::uint64_t>(*count);
     }
 
@@ -96,7 +96,7 @@ private:
 
     double number(std::string_view word) const {
         const auto value = parse_number(word);
-        if (!value) fail("has '" + printable(word) + "' where a number has to be");
+        if (!value) fail("has '" + printable(word) + "' instead of a number");
         return *value;
     }
 
@@ -153,14 +153,14 @@ private:
         if (word.empty()) fail_truncated(face_count_, "faces", i);
         const auto count = parse_integer(word);
         if (!count || *count < 0)
-            fail("has '" + printable(word) + "' where the number of corners of a face has to be");
+            fail("has '" + printable(word) + "' instead of the number of corners of a face");
         for (std::int64_t k = 0; k < *count; ++k) {
             const std::string_view corner =
                 has_row_a_line_ ? words_.next_word_on_line() : words_.next_word();
             if (corner.empty() && words_.at_end()) fail_truncated(face_count_, "faces", i);
             if (corner.empty())
-                fail("has a face of " + std::to_string(*count) + " corners and " +
-                     std::to_string(k) + " of them");
+                fail("has only " + std::to_string(k) + " corners of a face of " +
+                     std::to_string(*count));
             const auto index = parse_integer(corner);
             if (!index) fail("has the vertex '" + printable(corner) + "'");
             const bool is_vertex = *index >= 0 && *index < RawMesh::no_vertex;

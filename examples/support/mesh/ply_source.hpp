@@ -36,7 +36,7 @@ public:
         const std::string_view word = words_.next_word();
         if (word.empty()) return std::nullopt;
         const auto value = parse_number(word);
-        if (!value) fail("has '" + printable(word) + "' where a number has to be");
+        if (!value) fail("has '" + printable(word) + "' instead of a number");
         return value;
     }
 

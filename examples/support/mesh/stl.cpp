@@ -53,7 +53,7 @@ RawMesh read_binary(const std::filesystem::path& path, std::string_view bytes) {
     const std::string name = quoted("mesh", path);
     if (bytes.size() < header_bytes)
         throw InputError(name + " is truncated: it has " + std::to_string(bytes.size()) +
-                         " bytes, a binary STL file has 84 at least");
+                         " bytes, a binary STL file has at least 84");
     const std::uint64_t count = little_endian(bytes, 80);
     const std::uint64_t held = (bytes.size() - header_bytes) / triangle_bytes;
     if (count > held)
@@ -99,8 +99,8 @@ private:
             throw InputError(quoted("mesh", path_) + " is truncated: no " + wanted +
                              " follows facet " + std::to_string(mesh_.face_ends.size()));
         throw InputError(quoted("mesh", path_) + " is damaged: line " +
-                         std::to_string(words_.line()) + " has '" + printable(word) + "' where " +
-                         wanted + " has to be");
+                         std::to_string(words_.line()) + " has '" + printable(word) +
+                         "' instead of " + wanted);
     }
 
     void expect(std::string_view keyword) {

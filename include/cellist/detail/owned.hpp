@@ -17,7 +17,7 @@ public:
         : pointer_(std::move(pointer)), what_(what) {}
 
     [[nodiscard]] const Pointer& pointer() const {
-        if (!pointer_) throw Error(std::string(what_) + " is used that was moved from");
+        if (!pointer_) throw Error(std::string(what_) + " is used after it was moved from");
         return pointer_;
     }
     [[nodiscard]] auto* get() const { return pointer().get(); }
