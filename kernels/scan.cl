@@ -1,8 +1,8 @@
 // Sums and prefix sums of the counts of all cells, in blocks.
 //
 //   heads     the counts of the cells, from counts_at on
-//   offsets   cells + 1   out: where the lists begin that have these counts, none over `capacity`. May be
-//                         the heads, even in the place of the counts
+//   offsets   cells + 1   out: where lists with these counts begin, none over `capacity`. May be the
+//                         heads, even in the place of the counts
 //   sums      blocks    the sum of min(count, limit) over a block, in 64 bits; then, in its place, the
 //                       sum of all blocks before it
 //   hashes    blocks    the sum of a hash of each cell and its count
@@ -18,7 +18,8 @@
 // Cells of a work-item. As in cell_scan.cpp.
 #define CELLIST_SCAN_CELLS 16
 
-// Tells where a count has gone to another cell (the finaliser of MurmurHash3). Empty cells add nothing.
+// A hash of a cell and its count (the finaliser of MurmurHash3), so that the sum changes if a count moves
+// to another cell. Empty cells add nothing.
 static inline ulong cellist_count_hash(uint cell, uint count) {
     ulong hash = ((ulong)cell << 32) | count;
     hash = (hash ^ hash >> 33) * 0xFF51AFD7ED558CCDul;

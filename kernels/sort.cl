@@ -8,11 +8,11 @@
 //   CELLIST_SORT_TEAM       work-items that sort a list, a power of two
 //   CELLIST_SORT_ITEMS      work-items that sort together, a power of two. More than one are a
 //                           work-group and share local memory (GPUs); one needs neither (CPUs)
-//   CELLIST_SORT_PIECE      the type in whose size nodes move, where they are too large for private memory
+//   CELLIST_SORT_PIECE      the type of the pieces in which nodes move, if they are too large for private memory
 //
 // and after this file cellist_sort_key(pointer to a record), which maps the key to an unsigned integer of
-// the same order. Its value may differ from call to call, where the user's expression is no order. No
-// record is lost then: what moves a record compares each pair once, or reads keys that were stored.
+// the same order. If the user's expression is not an order, its value may differ from call to call. No
+// record is lost then: the code that moves records compares each pair once, or reads stored keys.
 //
 // The rank of a record is the number of records that come before it. Ranking compares all with all: for
 // up to some hundred records this is faster than sorts with fewer comparisons, because it does not
@@ -97,8 +97,8 @@ static inline void cellist_sort_store(global cellist_sort_node* nodes, uint at, 
 }
 
 #if CELLIST_MODES != CELLIST_LINKED
-// Whether the offsets of a list are impossible. Cells of another slice have no records, wherever these would
-// be.
+// Whether the offsets of a list are impossible. Cells of another slice have no records, whatever their
+// offsets.
 static inline int cellist_sort_is_broken(volatile global uint* heads, const cellist_view view,
                                          uint cell) {
     const uint begin = cellist_begin(heads, view, cell);

@@ -1,7 +1,7 @@
-// Checks the offsets of lists that lie one after the other: that they ascend inside the pool, that they are
-// those that the counts give, and that every list was filled.
+// Checks the offsets of lists that lie one after the other: that they ascend inside the pool, that they
+// match the counts, and that every list was filled.
 //
-//   offsets    cells + 1   where lists begin that have the counts; the heads, if that is not asked
+//   offsets    cells + 1   where lists with these counts begin; the heads, to skip this check
 //   findings   1   in: 0; out: lists that begin or end elsewhere, before they begin, or after the pool;
 //                  nodes that no record was written to, nodes of all lists
 //

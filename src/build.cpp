@@ -7,7 +7,7 @@
 
 namespace cellist::detail {
 
-/// Names the build whose function this thread runs, and that around it.
+/// The build whose function this thread runs, and a link to the build around it.
 class Build::Running {
 public:
     explicit Running(Build& now) : build(now), outer(std::exchange(innermost, this)) {}
@@ -47,8 +47,7 @@ void Build::fail(bool without_pool) noexcept {
     }
 }
 
-/// The containers, so that none goes before the caller has ended: the function that inserts may replace
-/// them.
+/// Keeps the containers alive until the caller returns: the function that inserts may replace them.
 std::vector<std::shared_ptr<ListsCore>> Build::held() const {
     std::vector<std::shared_ptr<ListsCore>> held;
     for (ListsCore* container : containers_) held.push_back(container->shared_from_this());
@@ -126,7 +125,7 @@ void Build::take_counts(const ListsCore& lists) {
             if (bystander->lists.lock().get() == &lists) count_refused(*bystander);
 }
 
-/// Enqueues the reading of what the lists have refused. Nobody can read those that have gone.
+/// Enqueues the reading of the number of inserts that the lists have refused, if the lists still exist.
 void Build::count_refused(Bystander& bystander) {
     if (std::exchange(bystander.counted, true)) return;
     if (const auto lists = bystander.lists.lock())
@@ -135,7 +134,7 @@ void Build::count_refused(Bystander& bystander) {
         bystander.lists.reset();
 }
 
-/// Throws Error if lists that are no part of the build have refused inserts of its kernels. Blocks.
+/// Throws Error if lists that are not part of the build have refused inserts of its kernels. Blocks.
 void Build::check_bystanders() {
     for (const auto& bystander : std::exchange(bystanders_, {})) {
         bystander->arrival.wait();
@@ -149,7 +148,7 @@ void Build::check_bystanders() {
         throw Error("the " + bystander->description + " (" + uses + ") refused " +
                     std::to_string(after - before) + " inserts" +
                     (passes > 1 ? " in " + std::to_string(passes) + " passes" : std::string()) +
-                    ", for they are no part of the build: name all containers that the "
+                    ", because they are no part of the build: name all containers that the "
                     "kernels fill, as in cellist::build(function, lists, other_lists)");
     }
 }

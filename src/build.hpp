@@ -37,8 +37,8 @@ public:
     /// Whether finish() can change the lists.
     [[nodiscard]] bool may_change() const;
 
-    /// Tells the build whose function this thread runs, if any, that a kernel is given lists that take no
-    /// inserts, as the nodes of which parameter. Comes before the kernel.
+    /// Call this before a kernel that takes closed lists: tells the build whose function this thread runs,
+    /// if any, which lists they are and which parameter takes their nodes.
     static void give(const std::weak_ptr<const ListsCore>& lists, const std::string& parameter,
                      const std::string& kernel);
     /// Tells the builds whose functions this thread runs that the counters of a container are about to be
@@ -46,8 +46,8 @@ public:
     static void take_counts(const ListsCore& lists);
 
 private:
-    /// Lists that kernels of the build are given and that are no part of it. What they refuse would be
-    /// lost without a word.
+    /// Lists that kernels of the build take and that are not part of it. Records that they refuse would be
+    /// lost silently.
     struct Bystander {
         std::weak_ptr<const ListsCore> lists;
         std::string description;

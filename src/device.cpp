@@ -227,7 +227,7 @@ const std::optional<Profile>& DeviceState::profile() {
 
 cl::Program DeviceState::program(const std::string& source, const std::string& options) {
     if (includes_files(source, options)) {
-        // Drivers keep programs as well, and some do not look at the files: no text is given twice.
+        // Drivers cache programs as well, and some ignore included files: no text is used twice.
         static std::atomic<std::uint64_t> count = std::random_device{}();
         return build_program(source + "\n// " + std::to_string(++count) + "\n", options);
     }

@@ -31,9 +31,9 @@ struct DeviceState {
     /// Completes when all that was enqueued has.
     [[nodiscard]] cl::Event marker() const;
 
-    /// The program with this source and these options. Builds it unless it is among the last ones; always,
-    /// where the source or the options include other files, which may have changed. Throws OpenClError
-    /// with the compiler's log. Any thread may call it.
+    /// The program with this source and these options. Builds it unless it is among the last ones. Always
+    /// builds it if the source or the options include other files, which may have changed. Throws
+    /// OpenClError with the compiler's log. Any thread may call it.
     cl::Program program(const std::string& source, const std::string& options);
 
     /// What `cellist tune` has stored of the device. Read the first time; any thread may call it.

@@ -19,13 +19,13 @@ constexpr std::string_view digits = "0123456789";
 constexpr std::string_view blanks = " \t\r\n";
 constexpr std::string_view operators = "+-*/%&|^~!<>=?:.,";
 
-// Comments; what begins trigraphs, where ??/ is a backslash; digraphs for braces, # and brackets; members
-// of what a pointer points to; operators that write.
+// Comments; the start of trigraphs, of which ??/ is a backslash; digraphs for braces, # and brackets;
+// member access through pointers; operators that write.
 constexpr std::array refused_operators{"//"sv, "/*"sv, "??"sv, "<%"sv, "%>"sv, "%:"sv,  "<:"sv,
                                        ":>"sv, "->"sv, "++"sv, "--"sv, "+="sv, "-="sv,  "*="sv,
                                        "/="sv, "%="sv, "&="sv, "|="sv, "^="sv, "<<="sv, ">>="sv};
 
-// The function around the expression, what not all work-items may reach, and calls that write or wait.
+// The function around the expression, calls that all work-items must reach, and calls that write or wait.
 constexpr std::array refused_names{
     "cellist_sort_key"sv, "asm"sv,    "barrier"sv, "fract"sv, "frexp"sv, "lgamma_r"sv, "modf"sv,
     "prefetch"sv,         "printf"sv, "remquo"sv,  "sincos"sv};
@@ -57,18 +57,17 @@ bool is_type(std::string_view name) {
            contains(vector_lengths, name.substr(end));
 }
 
-/// A bracket that is open.
+/// An open bracket.
 struct Bracket {
     char closing;
-    bool is_call;      ///< or an index: an operand stands before it
-    bool holds_types;  ///< and nothing else: with brackets around them, a cast
+    bool is_call;      ///< a call or an index: an operand comes before the bracket
+    bool holds_types;  ///< only type names so far: closed, they make a cast
 };
 
 [[noreturn]] void refuse(std::string_view text, std::size_t at, const std::string& what) {
     throw Error("an expression has " + what + " at character " + std::to_string(at + 1) +
-                ", but must be one OpenCL C expression, of names, numbers, operators and calls, "
-                "that writes "
-                "nothing and uses no pointers: " +
+                ", but must be one OpenCL C expression of names, numbers, operators and calls, "
+                "without writes and pointers: " +
                 std::string(text));
 }
 

@@ -10,10 +10,10 @@ namespace cellist::detail {
 constexpr std::size_t expression_length_max = 1024;
 
 /// Throws Error unless the text, put between brackets, is one expression or no valid source at all: so
-/// that it cannot end the function around it, open a comment, define a macro, loop or call itself. Refuses
-/// as well what can be seen to write or to use pointers: assignments, unary * and &, pointer types, ->,
-/// atomics, and other functions that write. Names, types, values and indices are left to the device's
-/// compiler.
+/// that it cannot end the function around it, open a comment, define a macro, loop or call itself. Also
+/// refuses syntax that writes or uses pointers: assignments, unary * and &, pointer types, ->, atomics,
+/// and other functions that write. The device's compiler checks names and types; nothing checks values
+/// and indices.
 void check_expression(std::string_view text);
 
 }  // namespace cellist::detail

@@ -41,7 +41,7 @@ ProgramText whole_source(const Source& source, const detail::Definitions& defini
     detail::Definitions all = definitions;
     if (uses_glm) all.add(detail::glm_source());
     ProgramText whole;
-    // Macros of the build options are for the user's source, and unknown to the library's.
+    // Hides the macros of the build options from the library's text; only the user's source sees them.
     const std::vector<std::string> macros = detail::defined_macros(source.options);
     std::string hide, show;
     for (const std::string& macro : macros) {
@@ -63,12 +63,12 @@ ProgramText whole_source(const Source& source, const detail::Definitions& defini
     return whole;
 }
 
-/// Which struct or member the device's compiler does not accept, and why; empty if it is something else.
+/// Says which struct or member the device's compiler does not accept, and why; empty for other errors.
 std::string complaint_about_structs(const ProgramText& whole, const std::string& log,
                                     const DeviceInfo& device) {
     const std::vector<ProgramText::Complaint> errors = whole.errors(log, structs);
     if (errors.empty()) return {};
-    // A member that the compiler drops changes the layout as well.
+    // A member that the compiler drops changes the layout, too.
     const auto name = std::find_if(errors.begin(), errors.end(), [](const auto& error) {
         return error.message.find("negative") == std::string_view::npos;
     });
@@ -84,7 +84,7 @@ std::string complaint_about_structs(const ProgramText& whole, const std::string&
            ": where its name is a word or a macro of OpenCL C, or of the library, rename it\n";
 }
 
-/// Names the macros of the build options where one replaces a member, or the log complains about one.
+/// A hint that names the macros of the build options that replace a member, or that the log mentions.
 std::string macro_hint(const std::string& options, const detail::Definitions& definitions,
                        const std::string& log) {
     const bool in_log = log.find("<command line>") != std::string::npos;
@@ -201,7 +201,7 @@ struct Kernel::Impl {
     detail::Definitions definitions;
     std::map<cl_uint, Variant> variants;  ///< by modes
 
-    /// Sets the arguments, after a look at all of them.
+    /// Checks all arguments, then sets them.
     void set(Variant& variant, const Arguments& arguments) const {
         const auto list = arguments.list();
         if (list.size() != variant.parameters.size())

@@ -115,12 +115,13 @@ void ListsCore::add_to(Arguments& arguments) const {
 }
 
 void ListsCore::refuse_orphan(const std::shared_ptr<ListsCore>& self) {
-    if (self.use_count() == 1) throw Error("the lists went before their build was finished");
+    if (self.use_count() == 1)
+        throw Error("the lists were destroyed before their build was finished");
 }
 
 void ListsCore::refuse_while_open() const {
     if (storage_->is_open())
-        throw Error("a container is used while it is built: kernels may insert, and no more");
+        throw Error("a container is used while it is built: only kernels may, to insert records");
 }
 
 bool ListsCore::is_open() const { return storage_->is_open(); }
@@ -207,7 +208,7 @@ ListSorter& ListsCore::sorter() {
 
 void ListsCore::sort_as_on(cl_device_type type) { sorter().set_device_type(type); }
 
-/// The length of every list, in the first of `words` words of a device buffer.
+/// The length of every list, at the start of a device buffer of `words` words.
 Memory ListsCore::device_lengths(std::uint64_t words) const {
     refuse_while_open();
     Memory lengths(device_.state(), words, sizeof(cl_uint), "length buffer");
@@ -224,7 +225,7 @@ Reading ListsCore::read_lengths(std::vector<cl_uint>& lengths) const {
         .read_later(lengths.data(), lengths.size() * sizeof(cl_uint));
 }
 
-/// The records of all lists; the most there can be, where a build that drops some is pending.
+/// The number of records in all lists; the greatest possible number while a build that may drop is pending.
 std::uint64_t ListsCore::most_records() const {
     return pending_ ? storage_->capacity_nodes() : storage_->stored();
 }

@@ -26,7 +26,7 @@ cl::Event OtherQueues::run_between(const std::function<cl::Event()>& enqueue) co
     try {
         let_wait(done);
     } catch (...) {
-        // The owners cannot know when the command ends: it ends here.
+        // The owners' queues do not wait for the command, so this waits for its end.
         clFinish(user_.queue());
         throw;
     }

@@ -13,7 +13,7 @@ namespace cellist::detail {
 /// The queues, other than the one that a command runs on, whose containers and buffers it uses.
 class OtherQueues {
 public:
-    /// Of a command on the queue of `user`.
+    /// For a command on the queue of `user`.
     OtherQueues(const DeviceState& user, const Arguments& arguments);
 
     [[nodiscard]] bool empty() const { return owners_.empty(); }

@@ -48,9 +48,9 @@ std::string pointed_to(std::string type) {
     return type.starts_with("struct ") ? type.substr(7) : type;
 }
 
-/// What must be the same in an argument and a parameter: float or integer with the size of the scalar,
-/// or the name of a struct. Vectors count as their scalars, and signs do not count. Empty for other
-/// types, which are not compared.
+/// The part of a type in which an argument and a parameter must match: float or integer with the size of
+/// the scalar, or the name of a struct. Vectors count as their scalars, and signs do not count. Empty for
+/// other types, which are not compared.
 std::string comparable(const std::string& type, const Definitions& definitions) {
     if (type.empty()) return {};
     for (const RecordType& record : definitions.records)
@@ -99,7 +99,7 @@ void describe_image(Parameter& parameter, std::string type) {
         if (type == image.type) parameter.image = image.object;
 }
 
-/// By its type, or where that has a name of the user's, by what stands before images alone.
+/// Whether a parameter is an image: by its type, or, for a typedef, by its access and address qualifiers.
 bool is_image(const std::string& type, cl_kernel_arg_address_qualifier address,
               cl_kernel_arg_access_qualifier access) {
     Parameter known;
@@ -175,7 +175,7 @@ Parameter parameter_of(const cl::Kernel& kernel, cl_uint index, const Definition
     return parameter;
 }
 
-/// A property of memory. Not by the bindings, which would take a reference.
+/// A property of memory. The C++ bindings are not used, because they would retain the object.
 template <class T>
 T memory_info(cl_mem memory, cl_mem_info what) {
     T value{};
@@ -183,7 +183,7 @@ T memory_info(cl_mem memory, cl_mem_info what) {
     return value;
 }
 
-/// What an argument refers to. The class of the C++ bindings does not tell: cl::Memory has any object.
+/// The object that an argument refers to. Its C++ class does not tell the kind: cl::Memory may be any object.
 struct Given {
     Kind kind = Kind::value;
     cl_mem memory = nullptr;
@@ -270,7 +270,7 @@ void ArgumentCheck::operator()(std::size_t index, const Parameter& parameter,
 
     if (found.kind == Kind::value && parameter.size != 0 && argument.size != parameter.size)
         fail(bytes(parameter.size), std::to_string(argument.size));
-    // Most types are written as the parameter's, which is soon told.
+    // A fast path: most types are spelt as the parameter's.
     if (!parameter.comparable.empty() && argument.type != parameter.type) {
         const std::string type = comparable(argument.type, definitions_);
         if (!type.empty() && type != parameter.comparable)
@@ -296,8 +296,8 @@ void ArgumentCheck::operator()(std::size_t index, const Parameter& parameter,
         if (parameter.image != 0 && found.object != parameter.image)
             fail(image_name(parameter.image), image_name(found.object));
         if (parameter.image != 0 && holds_depths(found.memory) != parameter.is_depth)
-            fail(parameter.is_depth ? "an image of depths" : "an image of colours",
-                 parameter.is_depth ? "an image of colours" : "an image of depths");
+            fail(parameter.is_depth ? "a depth image" : "a colour image",
+                 parameter.is_depth ? "a colour image" : "a depth image");
         const auto flags = memory_info<cl_mem_flags>(found.memory, CL_MEM_FLAGS);
         const auto access = parameter.access;
         if ((flags & CL_MEM_READ_ONLY) != 0 && access != CL_KERNEL_ARG_ACCESS_READ_ONLY)

@@ -17,7 +17,7 @@ struct Parameter {
     std::string declaration;    ///< e.g. "global uint* counts"
     std::string name;           ///< e.g. "counts"
     std::string type;           ///< of the value or of what a pointer points to, e.g. "uint"
-    std::string comparable;     ///< what of the type must be the same in an argument
+    std::string comparable;     ///< the part of the type that an argument must match
     bool is_container = false;  ///< the nodes of a container; `type` is their record
     bool is_constant = false;   ///< a buffer in constant memory
     Kind kind = Kind::value;
@@ -31,8 +31,8 @@ struct Parameter {
 [[nodiscard]] std::vector<Parameter> parameters_of(const cl::Kernel& kernel,
                                                    const Definitions& definitions);
 
-/// Throws Error if an argument does not fit a parameter of a kernel. Drivers do not all check this: PoCL
-/// takes a value of any size and a buffer for an image, and none knows what a buffer holds.
+/// Throws Error if an argument does not fit a parameter of a kernel. Not every driver checks this: PoCL
+/// accepts a value of any size, and a buffer for an image. No driver knows the type of a buffer's elements.
 class ArgumentCheck {
 public:
     ArgumentCheck(const DeviceState& device, const Definitions& definitions,

@@ -146,8 +146,8 @@ std::optional<Profile> load_profile(const DeviceInfo& device) {
 
 namespace {
 
-/// A new file beside the profile's. Under another name first: a reader sees the old profile or the new
-/// one.
+/// A new file in the folder of the profile, under another name, so that a reader sees either the old
+/// profile or the new one.
 fs::path write_unfinished(const fs::path& path, const std::string& text) {
     fs::path unfinished = path;
     unfinished += "." + std::to_string(std::random_device{}());

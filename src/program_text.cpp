@@ -44,7 +44,7 @@ std::string_view take_library_include(std::string_view& text) {
     return name;
 }
 
-/// The source without line continuations, of which one may stand anywhere in a directive.
+/// The source without line continuations, which may be anywhere in a directive.
 std::string spliced(std::string_view text) {
     std::string out;
     for (std::size_t at = 0; at < text.size(); ++at) {
@@ -56,7 +56,7 @@ std::string spliced(std::string_view text) {
                                        ? 3
                                        : 0;
         if (escape != 0) {
-            // Compilers allow for blanks before the end of the line.
+            // Compilers allow blanks between the backslash and the end of the line.
             const std::size_t end = rest.find_first_not_of(" \t\v\f", escape);
             if (end != std::string_view::npos && (rest[end] == '\n' || rest[end] == '\r')) {
                 at += end;

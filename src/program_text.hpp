@@ -43,16 +43,16 @@ private:
     std::vector<Part> parts_;
 };
 
-/// Takes a byte order mark and the library's own #include lines out of a source, since the library's
-/// text stands before it already, and keeps the line numbers. Sets `uses_glm` if <cellist/glm.clh> was among them.
+/// Removes a byte order mark and the library's own #include lines from a source, since the library's text
+/// is already in front of it. Keeps the line numbers. Sets `uses_glm` if <cellist/glm.clh> was among the
+/// lines.
 [[nodiscard]] std::string without_library_includes(std::string_view text, bool& uses_glm);
 
-/// The macros that build options define with -D, but for those that belong to the library or to the
-/// compiler.
+/// The macros that build options define with -D, except those that belong to the library or the compiler.
 [[nodiscard]] std::vector<std::string> defined_macros(std::string_view options);
 
-/// Whether a program may take the text of other files: by a directive in its source, wherever that stands,
-/// or by one of its options. True for some sources that only look so, such as in a comment.
+/// Whether a program may include other files: by a directive anywhere in its source, or by an option. Also
+/// true for some sources that only look like it, for example in a comment.
 [[nodiscard]] bool includes_files(std::string_view source, std::string_view options);
 
 /// The letters, digits and underscores behind the first `prefix` that has any; empty if none has.

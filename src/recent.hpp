@@ -7,8 +7,8 @@
 
 namespace cellist::detail {
 
-/// A map of the values that were used last. One more than `most` takes the place of the one that was not
-/// used for the longest time. A value stays where it is as long as it is in the map.
+/// A map of the `most` values that were used last: a new value replaces the least recently used one. The
+/// address of a value stays the same while it is in the map.
 template <class Key, class Value>
 class Recent {
 public:
@@ -21,7 +21,7 @@ public:
         values_.splice(values_.begin(), values_, known->second);
         return &values_.front().second;
     }
-    /// A key that is not in the map.
+    /// Adds a value; its key must not be in the map.
     Value& add(const Key& key, Value value) {
         values_.emplace_front(key, std::move(value));
         try {

@@ -40,14 +40,14 @@ std::string define(const char* name, unsigned value) {
 
 bool in_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
-/// Whether a key is the value of a member: the same whenever it is read.
+/// Whether a key is the value of a member, which is the same whenever it is read.
 bool is_member(const SortKey& key) {
     constexpr std::string_view prefix = "record.";
     return key.expression.starts_with(prefix) &&
            std::all_of(key.expression.begin() + prefix.size(), key.expression.end(), in_name);
 }
 
-/// An expression of `record` as one of the record that a pointer leads to. A private copy of a large
+/// An expression of `record`, rewritten to read the record through a pointer. A private copy of a large
 /// record would take too much memory.
 std::string of_pointer(std::string_view expression) {
     std::string text;
@@ -81,8 +81,8 @@ std::string key_function(const SortKey& key) {
            "\n); }\n#ifdef __clang__\n#pragma clang diagnostic pop\n#endif\n";
 }
 
-/// The type in whose size nodes move: of the widest vector that divides a node. Empty for nodes of which a
-/// work-item has room for some hundred.
+/// The type of the pieces in which large nodes move: the widest vector whose size divides a node. Empty for
+/// small nodes, which move whole.
 std::string piece_type(std::size_t node_bytes) {
     constexpr std::size_t whole_max = 256;
     if (node_bytes <= whole_max) return {};
@@ -158,11 +158,11 @@ void ListSorter::read_state(Sort& sort) const {
         throw Error(sort.linked
                         ? "lists cannot be sorted: links lead out of the pool, in circles, or from "
                           "several lists to the same nodes (Lists::validate() finds them)"
-                        : "lists cannot be sorted: some end before they begin, or after the pool "
+                        : "lists cannot be sorted: some end before they begin, or outside the pool "
                           "(Lists::validate() finds them)");
 }
 
-/// Throws Error where the lists do not have as many nodes as the last build has left.
+/// Throws Error where the lists do not have as many nodes as the last build stored.
 void ListSorter::check_nodes(const Sort& sort) const {
     if (sort.state.nodes == sort.storage.stored()) return;
     throw Error("lists cannot be sorted: they have " + std::to_string(sort.state.nodes) +
@@ -263,7 +263,7 @@ void ListSorter::sort_classes(Sort& sort) {
     in_class_.back() += static_cast<cl_uint>(sort.count);
 }
 
-/// Lists that the first class leaves, at most: sound ones are longer than it.
+/// The most lists that the first class can leave: in sound lists, only longer ones are left.
 std::uint64_t ListSorter::most_left(const Sort& sort) const {
     const SortTuning tuning = sort.plan.of_class(first_class(sort));
     return std::min<std::uint64_t>(sort.count, sort.storage.pool_nodes() / (tuning.slots + 1));
@@ -334,7 +334,7 @@ void ListSorter::sort_long(Sort& sort) {
     merge(sort, longs, owners, *keys);
 }
 
-/// None where there is no memory for them.
+/// Buffers for keys; nothing where there is no memory for them.
 std::optional<ListSorter::Keys> ListSorter::keys_of(const Sort& sort) const {
     const std::uint64_t count = is_member(sort.key) ? 0 : sort.storage.pool_nodes();
     const std::uint64_t bytes = count * sizeof(cl_ulong);

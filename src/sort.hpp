@@ -35,8 +35,8 @@ public:
     ListSorter(MemoryOwner device, Definitions definitions);
 
     /// Sorts all lists; `front` nodes of each at least, the others may follow in any order. Blocks until
-    /// it is known how long the lists are. Throws Error where links or offsets are not those of the last
-    /// build. Whatever fails, sound lists hold what they held, in some order.
+    /// it is known how long the lists are. Throws Error where links or offsets are corrupt. Whatever fails,
+    /// sound lists keep their records, in some order.
     cl::Event sort(ListStorage& storage, const SortKey& key, std::uint32_t front);
     /// Sorts all lists in their places, one work-item a list. Does not block.
     cl::Event sort_in_place(ListStorage& storage, const SortKey& key);

@@ -64,8 +64,8 @@ public:
     /// afterwards if there was none, or if `without_pool` says so.
     void recover(bool without_pool);
 
-    /// Looks for links, offsets and counts that do not belong together, or differ from those of the last
-    /// build. The result may be asked for once, when that build is finished; that blocks, this does not.
+    /// Enqueues a check for links, offsets and counts that are inconsistent, or differ from those of the
+    /// last build. Does not block. Call the result once, when that build is finished; that call blocks.
     [[nodiscard]] virtual std::function<Validation()> validate() = 0;
 
     /// From now on, these cells alone have lists. The lists must be empty.
@@ -147,7 +147,7 @@ protected:
     /// Elements of the counters, hands and their owners included.
     [[nodiscard]] std::uint64_t counters_with(std::uint64_t capacity_nodes) const;
     [[nodiscard]] std::uint64_t bytes_with(std::uint64_t capacity_nodes) const;
-    /// What another pool takes the place of.
+    /// Device memory of the buffers that another pool would replace.
     [[nodiscard]] virtual std::uint64_t replaceable_bytes() const;
     /// Why the pool cannot have this capacity, if it cannot.
     [[nodiscard]] std::optional<std::string> refusal(std::uint64_t capacity_nodes) const;
@@ -185,7 +185,7 @@ protected:
     [[nodiscard]] Kernel kernel(const std::string& name, std::string_view source,
                                 cl_uint mode) const;
 
-    /// What a build leaves, to which a validation compares what it finds.
+    /// The state after a build, for a validation to compare with.
     struct Expected {
         std::uint64_t stored = 0;
         std::uint64_t counts_hash = 0;

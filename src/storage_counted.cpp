@@ -81,7 +81,7 @@ bool CountedStorage::finish_pass() {
         return false;
     }
     if (counted_) {
-        // The offsets are their own: no hand has been on them yet.
+        // Nothing has changed the offsets yet, so they are compared with themselves.
         reading_ = find(filled_, heads_);
         reading_ = read_counters(counters_);
         return false;
@@ -215,7 +215,7 @@ std::vector<cl_uint> CountedStorage::counts(BuildReport& report) {
     return words;
 }
 
-/// Enqueues the comparison of the counts with the lists, and of the offsets with others.
+/// Enqueues the comparison of the counts with the lists, and of the offsets with the expected offsets.
 Reading CountedStorage::find(Findings& findings, const Memory& offsets) {
     if (!validate_)
         validate_.emplace(

@@ -117,11 +117,12 @@ bool NearestStorage::review_pass(BuildReport& report) {
     const std::uint64_t ranked_records = ranked.dropped + ranked.rejected;
     if (choice_.unrepeated > 0 || ranked.rejected != chosen.rejected ||
         ranked_records != report.attempted)
-        throw UnrepeatableError(
-            "the kernel inserted " + std::to_string(report.attempted) +
-            " records when it filled the slots, and " + std::to_string(ranked_records) +
-            " or others when it ranked them: it must insert the same records every time, or use "
-            "another policy than Overflow::keep_nearest");
+        throw UnrepeatableError("the kernel inserted " + std::to_string(report.attempted) +
+                                " records when it filled the slots, and " +
+                                std::to_string(ranked_records) +
+                                " or different ones when it ranked them: it must insert the same "
+                                "records every time, or use "
+                                "another policy than Overflow::keep_nearest");
     // Records that are equal in every word are the same: any of them will do.
     if (choice_.undecided == 0 || rank_words_ >= choice_.words) return true;
     ranked_ = false;

@@ -41,7 +41,7 @@ std::optional<double> fraction(std::string_view text) {
     return *numerator / *denominator;
 }
 
-// What stands before "dB", in any case of letters and with spaces between them or not.
+// The text before "dB", which may be in upper or lower case and after spaces.
 std::optional<std::string_view> before_unit(std::string_view text) {
     if (text.size() < 2) return {};
     const std::string_view unit = text.substr(text.size() - 2);
@@ -82,17 +82,17 @@ Budget parse_budget(std::string_view text) {
         const auto psnr = number(*decibels);
         if (!psnr) refuse(text, std::string(expected));
         if (!(*psnr > 0 && *psnr <= most_db))
-            refuse(text, "a PSNR lies above 0 dB, and at 200 dB at most");
+            refuse(text, "a PSNR must be above 0 dB and at most 200 dB");
         return {Budget::Kind::psnr, *psnr};
     }
     const auto largest = fraction(text);
     if (!largest) refuse(text, std::string(expected));
     if (*largest >= 1)
-        refuse(text,
-               "every picture meets this, for no error is larger than 1: "
-               "expected less, such as "
-               "1/255, or a PSNR such as 40dB");
-    if (!(*largest > 0)) refuse(text, "an error above 0: no picture of floats is without");
+        refuse(
+            text,
+            "every picture meets this, because no error is larger than 1: expected less, such as "
+            "1/255, or a PSNR such as 40dB");
+    if (!(*largest > 0)) refuse(text, "expected an error above 0: pictures of floats have errors");
     return {Budget::Kind::largest, *largest};
 }
 

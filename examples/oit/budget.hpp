@@ -15,9 +15,9 @@ struct PictureError {
     [[nodiscard]] double psnr_db() const;
 };
 
-/// A picture against the truth: the error at most.
+/// A bound of the error of a picture against real arithmetic.
 struct PictureErrors {
-    PictureError told;  ///< apart from what the undecided pixels have beyond that
+    PictureError told;  ///< without the larger error that undecided pixels may have
     PictureError all;
     /// Pixels whose order of layers float depths do not tell, where the other order could be over
     /// the limit that the picture was compared for.
@@ -48,12 +48,12 @@ struct Budget {
     enum class Kind { largest, psnr };
     Kind kind = Kind::largest;
     double limit = 0;  ///< largest error, or dB
-    /// What is over the limit with either order of undecided pixels does not meet the budget.
+    /// Undecided pixels that are over the limit with either order of layers do not meet the budget.
     bool strict = false;
 
     [[nodiscard]] bool met_by(const PictureError& error) const;
     [[nodiscard]] bool met_by(const PictureErrors& errors) const { return met_by(counted(errors)); }
-    /// Of the errors, the one that the limit is for.
+    /// The one of the errors that counts for this budget.
     [[nodiscard]] const PictureError& counted(const PictureErrors& errors) const {
         return strict ? errors.all : errors.told;
     }

@@ -125,7 +125,7 @@ std::string chosen_text(const Choice& choice) {
            counted(choice.turns, "frame") + " in " + quartiles_text(choice.times) + ")";
 }
 
-// Why it is this one, where times do not say so.
+// Why this setting was chosen, where times alone do not decide.
 std::string plainest_text(const Choice& choice) {
     const std::uint64_t others = choice.count(Fate::as_fast);
     if (others == 0) return {};

@@ -365,7 +365,7 @@ private:
         });
     }
 
-    // The candidate left before, without times that were taken by turns.
+    // The candidate dropped out before the turns, so it has no times of turns.
     void time_fallback() {
         winner_ = std::move(fallback_);
         for (int turn = 0; turn < 3; ++turn) winner_->turns.push_back(winner_->renderer.draw());
@@ -392,7 +392,7 @@ private:
         }
     }
 
-    // In the turns that both drew in.
+    // The ratio in the turns that both drew in.
     [[nodiscard]] double times_winner(const Contender& contender) const {
         const std::size_t turns = contender.turns.size();
         return contender.median_ms(turns) / winner_->median_ms(turns);

@@ -23,11 +23,11 @@ struct Candidate {
     enum class Fate {
         chosen,
         over_budget,
-        as_fast,      ///< as the fastest, as far as times tell; the chosen one is plainer
-        slower,       ///< than the chosen one
+        as_fast,      ///< its times do not differ from the fastest; the chosen setting is plainer
+        slower,       ///< slower than the chosen setting
         not_needed,   ///< a setting that gives up more meets the budget
         failed,       ///< the device cannot draw it
-        not_reached,  ///< the time for the search was over
+        not_reached,  ///< the search ran out of time
     };
     Setting setting;
     Fate fate = Fate::slower;
@@ -36,8 +36,8 @@ struct Candidate {
     std::optional<double> fastest_ms = {};   ///< a frame, where it was drawn
     /// As long as the leader of that moment took, by turns: says more than times of other moments.
     std::optional<double> times_leader = {};
-    /// Of those that drew by turns with the chosen one in the end: their times, and how long they
-    /// took against it in the median of the turns that both had.
+    /// For settings that drew by turns with the chosen one at the end: their times, and their median
+    /// ratio to the chosen setting in the turns that both drew in.
     std::optional<Spread> times = {};
     std::optional<double> times_chosen = {};
     std::string failure = {};
@@ -46,15 +46,15 @@ struct Candidate {
 /// What a budget led to.
 struct Choice {
     bool met = false;
-    Setting setting;            ///< where no setting meets the budget, the most accurate one
-    PictureErrors errors = {};  ///< its errors, at most
+    Setting setting;            ///< the most accurate one, if no setting meets the budget
+    PictureErrors errors = {};  ///< bounds of its errors
     bool bounded = false;       ///< as Candidate::bounded
     Spread times = {};          ///< of its frames
-    std::uint32_t turns = 0;    ///< frames that these are of
+    std::uint32_t turns = 0;    ///< number of these frames
     /// As long as this takes exact_setting(), by turns: 1 where that was chosen.
     std::optional<double> exact_times = {};
     SceneMeasure scene = {};
-    std::vector<Candidate> candidates = {};  ///< the fastest first, then those that were not drawn
+    std::vector<Candidate> candidates = {};  ///< fastest first; those that were not drawn come last
     std::uint32_t draws = 0;  ///< frames that were drawn to find it, the survey's included
     double took_ms = 0;
 
@@ -65,20 +65,20 @@ struct Choice {
 
 /// How a search is watched and limited.
 struct SearchOptions {
-    /// Is told how far the search is, from 0 to 1.
+    /// Called with the progress of the search, from 0 to 1.
     std::function<void(double)> progress = [](double) {};
-    /// After this time no other setting is looked at. All layers in float are, and the play-off has
+    /// After this time the search draws no new setting, except all layers in float. The play-off then has
     /// three turns.
     double seconds = 120;
 };
 
-/// Finds the cheapest setting within a budget, for a frame on a device. In the end the settings
-/// that are left draw by turns, so that what else the machine does falls to all of them.
-/// plainest_of_fastest() chooses one by these times.
+/// Finds the cheapest setting within a budget, for a frame on a device. At the end the remaining settings
+/// draw by turns, so that other work on the machine slows all of them alike. plainest_of_fastest()
+/// chooses one by these times.
 class Chooser {
 public:
-    /// Refers to the device and the frame, which must outlive it. Samples and how depths are scaled
-    /// are the frame's; its format, size, layers and epsilon do not matter.
+    /// Refers to the device and the frame, which must outlive it. Takes samples and the depth scale from
+    /// the frame, and ignores its format, size, layers and epsilon.
     Chooser(const cellist::Device& device, const Frame& frame, const Budget& budget,
             SearchOptions search);
     ~Chooser();

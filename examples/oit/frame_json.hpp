@@ -12,21 +12,21 @@
 
 namespace oit {
 
-// What the reports of all programs have in common: one name for one thing. docs/json.md has the table.
+// The parts of the JSON reports that all programs share. docs/json.md has the table of keys.
 
 /// The version of that table.
 inline constexpr int json_schema = 1;
 
-/// Null where a value is infinite or no number.
+/// Null for a value that is infinite or NaN.
 [[nodiscard]] nlohmann::ordered_json finite_or_null(double value);
 
-/// The number that people read for a float: 0.35, and not what is added to the digits of a double.
+/// The shortest number that stands for a float: 0.35, without the extra digits of a double.
 [[nodiscard]] double as_read(float value);
 
 /// The program, how it was called, and what it draws: the head of a report.
 [[nodiscard]] nlohmann::ordered_json json_of(const FrameOptions& options, std::string_view program);
 
-/// A method, and what is given up for speed.
+/// A setting: the method, and the accuracy that it gives up for speed.
 [[nodiscard]] nlohmann::ordered_json json_of(const Setting& setting);
 
 /// The times of frames.
@@ -38,7 +38,7 @@ inline constexpr int json_schema = 1;
 /// A file that was written, or null.
 [[nodiscard]] nlohmann::ordered_json json_of(const std::filesystem::path& path);
 
-/// Text of a JSON value; bytes that are no UTF-8 are replaced.
+/// The text of a JSON value; replaces bytes that are not UTF-8.
 [[nodiscard]] std::string dump(const nlohmann::ordered_json& json, int indent);
 
 }  // namespace oit

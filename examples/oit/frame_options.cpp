@@ -280,8 +280,8 @@ FrameArguments::FrameArguments(CLI::App& app, const FrameOptions& options)
                    "ALPHA is given; or a scene")
         ->type_name("MESH[:ALPHA]...|SCENE");
     add("--size", size_, "image size in pixels", "WxH");
-    add("--alpha", alpha_, "opacity, 0 to 1, of surfaces whose file does not say one", "A");
-    add("--up", up_, "axis of the mesh files that points up: x, y or z; else what each file says",
+    add("--alpha", alpha_, "opacity, 0 to 1, of surfaces whose file does not give one", "A");
+    add("--up", up_, "axis that points up in the mesh files: x, y or z; else each file decides",
         "AXIS");
     add("--blend", blend_,
         "how surfaces blend: over, additive, multiplicative, absorb, or a file with a function",

@@ -23,7 +23,7 @@ namespace oit {
 /// What is drawn, from where, and on which device: the options that all programs which draw have.
 struct FrameOptions {
     std::string scene;  ///< the name of a computed scene, or a mesh file as MESH[:ALPHA]
-    std::vector<std::string> more_meshes = {};  ///< further mesh files of the picture, so as well
+    std::vector<std::string> more_meshes = {};  ///< further mesh files, as MESH[:ALPHA]
     int width = 1280;
     int height = 720;
     float alpha = 0.35F;
@@ -46,7 +46,7 @@ public:
     FrameArguments(CLI::App& app, const FrameOptions& options);
 
     /// Reads and checks what has been parsed, and the file of a blend function. Throws InputError
-    /// where an argument cannot be used, or changes nothing.
+    /// where an argument cannot be used, or has no effect.
     void read(FrameOptions& options) const;
 
 private:
@@ -86,15 +86,15 @@ void check_outputs(const FrameOptions& options, std::span<const NamedFile> outpu
 /// image of their size.
 [[nodiscard]] cellist::Device choose_device(const FrameOptions& options);
 
-/// A mesh file of a command line: MESH[:ALPHA]. A file whose whole name is given wins over an
-/// opacity after its last colon.
+/// A mesh file of a command line: MESH[:ALPHA]. If the whole argument is the name of a file, the text
+/// after its last colon is not an opacity.
 struct MeshFile {
     std::filesystem::path path;
     std::optional<float> alpha;
 };
 [[nodiscard]] MeshFile mesh_file(const std::string& text);
 
-/// What the options draw, for titles: file names without folders, or the scene's name.
+/// A title for the picture: file names without folders, or the scene's name.
 [[nodiscard]] std::string title_of(const FrameOptions& options);
 
 /// The scene without a floor, from files or computed. Throws InputError where there is neither a
@@ -102,8 +102,7 @@ struct MeshFile {
 /// moves.
 [[nodiscard]] Scene make_scene(const FrameOptions& options);
 
-/// Adds the floor that the options ask for, where it is seen from above: from below it would hide
-/// the scene.
+/// Adds the floor that the options ask for, if the eye is above it: from below, it would hide the scene.
 void stand_on_floor(Scene& scene, const FrameOptions& options);
 
 /// Throws InputError, which begins with `option`, where time changes nothing in the scene.

@@ -19,7 +19,7 @@ struct Look {
     cl_float floor_square;      ///< side of one square of the checkerboard
     cl_float floor_fade_begin;  ///< distance from the axis where the floor starts to fade out
     cl_float floor_fade_end;
-    cl_float floor_shadow;            ///< how dark the floor gets under the object, 0 to 1
+    cl_float floor_shadow;            ///< darkness of the shadow under the object, 0 to 1
     cl_float floor_shadow_centre[2];  ///< x and z
     cl_float floor_shadow_radius[2];  ///< of an ellipse along x and z
 };

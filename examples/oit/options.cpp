@@ -85,7 +85,7 @@ void check_outputs(const Options& options) {
         if (!picture.empty()) (void)support::image_format(picture);
 }
 
-// What does nothing beside the other options, or contradicts them.
+// Options that have no effect with the other options, or contradict them.
 void refuse_idle_options(const CLI::App& app, const Options& options) {
     const bool has_budget = options.budget.has_value(), one_frame = options.frames == 1;
     const bool has_nodes = method_named(options.method).has_nodes;
@@ -120,7 +120,7 @@ void refuse_idle_options(const CLI::App& app, const Options& options) {
         not_compared("--reduce"),
         not_compared("--memory"),
         {"--blend", has_budget && options.blend_function,
-         "--budget knows no bound of the errors of a function of your own: leave one of them out"},
+         "--budget has no error bound for a function of your own: leave one of them out"},
         of_budget("--check-every"),
         of_budget("--search-seconds"),
         of_budget("--strict"),
@@ -172,11 +172,10 @@ Options parse_options(int count, const char* const* arguments) {
     add("--check-every", check_every, "of the frames that change, check each N-th for the budget",
         "N");
     add("--search-seconds", search_seconds,
-        "time to search for a setting within the budget; what was found by then is chosen from",
-        "S");
+        "time limit of the search for a setting within the budget", "S");
     app.add_flag("--strict", strict,
-                 "count undecided pixels, whose order of layers float depths do not tell, as over "
-                 "the budget where either order may be");
+                 "also hold the budget in undecided pixels, where float depths do not tell the "
+                 "order of layers");
     add("--until", until, "time of the last frame, in seconds; the first is at --time", "T");
     add("--turn", turn, "turn the camera from the first frame to the last", "DEGREES");
     app.add_flag("--reference", options.reference,
@@ -186,7 +185,7 @@ Options parse_options(int count, const char* const* arguments) {
         "FILE");
     add("--write-reference", write_reference, "write the picture in double precision here", "FILE");
     add("--write-difference", write_difference,
-        "write how far the picture is from that: 16 times in .png and .jpg, as it is in .pfm and "
+        "write the difference from that picture: times 16 in .png and .jpg, unscaled in .pfm and "
         ".exr",
         "FILE");
     add("--json", json, "write the figures to this file", "FILE");

@@ -26,9 +26,9 @@ struct Options : FrameOptions {
     std::filesystem::path write_difference = {};  ///< asks for `reference`, too
     std::filesystem::path json = {};
     std::uint32_t frames = 5;
-    /// Frames show different moments.
+    /// Whether frames show different moments.
     [[nodiscard]] bool moves() const { return until || turn_degrees != 0; }
-    /// A file goes to stdout, so that the report goes to stderr.
+    /// Whether a file goes to stdout, so that the report goes to stderr.
     [[nodiscard]] bool writes_to_stdout() const;
 
     bool help = false;

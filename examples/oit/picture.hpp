@@ -21,13 +21,13 @@ namespace oit {
 /// The reference's image in floats, eye by eye.
 [[nodiscard]] std::vector<cl_float4> linear_image(const Reference& reference);
 
-/// How many times as large as they are, differences are shown in 8 bits.
+/// The factor by which differences are enlarged in 8-bit pictures.
 inline constexpr int difference_factor = 16;
 
-/// How far two pictures are from each other, channel by channel, of linear colours.
+/// The difference of two pictures, channel by channel, of linear colours.
 [[nodiscard]] std::vector<cl_float4> linear_difference(std::span<const cl_float4> a,
                                                        std::span<const cl_float4> b);
-/// The same as people see it: of sRGB-encoded colours, difference_factor times, in bytes.
+/// The same for sRGB-encoded colours, times difference_factor, in bytes.
 [[nodiscard]] std::vector<std::uint8_t> shown_difference(std::span<const cl_float4> a,
                                                          std::span<const cl_float4> b);
 

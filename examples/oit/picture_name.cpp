@@ -23,9 +23,9 @@ PictureName::PictureName(const std::filesystem::path& path) : path_(path) {
         if (kind == '%' && digits.empty()) {
             part += '%';
         } else if (kind != 'd' || !(digits.empty() || is_padded)) {
-            refuse("a per cent sign begins the number of the frame, such as %04d; %% is the sign");
+            refuse("% must start the frame number, such as %04d; write %% for a per cent sign");
         } else if (has_number_) {
-            refuse("the number of the frame stands there once at most");
+            refuse("the frame number may occur only once");
         } else {
             has_number_ = true;
             digits_ = is_padded ? static_cast<std::size_t>(digits[1] - '0') : 0;

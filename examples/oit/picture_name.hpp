@@ -9,13 +9,13 @@ namespace oit {
 /// The name of a picture, or of the pictures of all frames: "frame-%04d.png". "%%" is a per cent sign.
 class PictureName {
 public:
-    /// Throws InputError where a per cent sign is neither of these, or there are several numbers.
+    /// Throws InputError for any other use of a per cent sign, and for several numbers.
     explicit PictureName(const std::filesystem::path& path);
 
     [[nodiscard]] bool has_number() const { return has_number_; }
     /// The name for a frame, counted from 1.
     [[nodiscard]] std::filesystem::path of(std::uint32_t frame) const;
-    /// As it was given.
+    /// The name as on the command line.
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
 private:

@@ -50,7 +50,7 @@ void confine_child(const ChildLimits& limits) {
     sigset_t none;
     sigemptyset(&none);
     (void)sigprocmask(SIG_SETMASK, &none, nullptr);
-    // Loaders and runtimes print on a crash; the parent says in one line what happened.
+    // Loaders and runtimes print when they crash; the parent reports the crash in one line instead.
     const int nothing = open("/dev/null", O_RDWR);
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
         (void)dup2(nothing, stream);
@@ -85,7 +85,7 @@ void confine_child(const ChildLimits& limits) {
     _exit(0);
 }
 
-// A child, which ends at the latest with this object.
+// A child process, which the destructor ends if it still runs.
 class Child {
 public:
     Child(const std::function<std::string()>& work, const ChildLimits& limits) {
@@ -133,7 +133,7 @@ public:
         return got > 0;
     }
 
-    // How the child ended; 0 where that is not known.
+    // How the child ended; 0 if unknown.
     int wait() {
         int status = 0;
         while (waitpid(pid_, &status, 0) < 0)

@@ -6,8 +6,8 @@
 
 namespace support {
 
-/// " (did you mean 'gearworks'?)" for the name that differs least from `text`: by inserted, left-out,
-/// changed and swapped characters, for a third of it at most. Nothing where no name is as close.
+/// " (did you mean 'gearworks'?)" for the name that differs least from `text`, counted in inserted,
+/// left-out, changed and swapped characters. Empty if every name differs in more than a third.
 [[nodiscard]] std::string did_you_mean(std::string_view text, std::span<const std::string> names);
 
 }  // namespace support

@@ -13,7 +13,7 @@
 namespace support {
 namespace {
 
-// For the first option that there is not.
+// A suggestion for the first unknown option.
 std::string meant_option(const CLI::App& app) {
     std::vector<std::string> names;
     for (const CLI::Option* option : app.get_options())

@@ -15,12 +15,12 @@ class App;
 
 namespace support {
 
-/// Reads a command line into the options of `app`, and into --version. Returns what is to be printed
-/// where it asks for help or the version. Throws InputError, with one line, where it cannot be read.
+/// Reads a command line into the options of `app`, and adds --version. Returns the text to print if the
+/// command line asks for help or the version. Throws InputError, with one line, if it is invalid.
 [[nodiscard]] std::optional<std::string> parse_command_line(CLI::App& app, int count,
                                                             const char* const* arguments);
 
-/// Of the programs, as --version prints it: "0.1.0".
+/// The version of the programs, as --version prints it: "0.1.0".
 [[nodiscard]] std::string_view version();
 
 /// The text of an option as a whole number. Throws InputError unless least <= number <= most.
@@ -35,22 +35,22 @@ namespace support {
 [[noreturn]] void refuse(const std::string& option, const std::string& text,
                          const std::string& expected);
 
-/// An option that changes nothing, or contradicts another one, where `applies` is true.
+/// An option that has no effect, or contradicts another one, if `applies` is true.
 struct IdleOption {
     const char* name;
     bool applies;
     std::string message;
 };
 
-/// Throws InputError with the message of the first of these that was given and applies.
+/// Throws InputError with the message of the first of these options that was given and applies.
 void refuse_idle_options(const CLI::App& app, std::span<const IdleOption> table);
 
-/// What main of an example does: prints errors in one line, after the program's name. The exit code
-/// is 0, or 1 where `program` threw or found a difference and returned false, or where not all that it
-/// printed could be written.
+/// The body of an example's main(): prints errors in one line, after the program's name. Returns the exit
+/// code: 1 if `program` threw, returned false because it found a difference, or printed output that could
+/// not be written; else 0.
 int run_program(const std::string& name, std::predicate auto&& program);
 
-/// Prints `message` after the program's name, without what follows its first line.
+/// Prints the first line of `message` after the program's name.
 void print_error(const std::string& name, const std::string& message);
 
 }  // namespace support

@@ -1,5 +1,5 @@
-// OpenEXR files: a header of attributes, the places of all lines, and the lines, each with its channels
-// one after the other. All numbers are little endian.
+// Writes OpenEXR files: a header of attributes, the offsets of all lines, and the lines. Each line has
+// its channels one after the other. All numbers are little endian.
 #include <bit>
 #include <cstring>
 #include <limits>
@@ -34,7 +34,7 @@ std::string bytes_of(T... values) {
     return bytes;
 }
 
-// Channels stand in the order of their names.
+// Channels are in the order of their names.
 constexpr struct {
     std::string_view name;
     int component;

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Functions that return an int return an errno, or 0.
+// Functions here that return an int return an errno, or 0.
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
@@ -49,8 +49,8 @@ std::size_t utf8_length(std::string_view text) {
     return code < least[length] || code > 0x10FFFF || is_surrogate ? 0 : length;
 }
 
-// Where a path leads. Links to what is open already (/dev/stdout) are not followed: behind them may be
-// the name of a file that another process writes.
+// The target of a path. Does not follow links to open files (/dev/stdout): they may lead to the name of
+// a file that another process writes.
 fs::path target_of(fs::path path) {
     std::error_code error;
     constexpr int most_links = 40;
@@ -84,7 +84,7 @@ int write_all(int file, std::string_view bytes) {
 
 int write_and_close(int file, std::string_view bytes, bool to_disk) {
     int error = write_all(file, bytes);
-    // Where disks are remote or quotas are counted late, only this tells that there was no room.
+    // With remote disks, or quotas that are counted late, only fsync reports that there was no room.
     if (error == 0 && to_disk && ::fsync(file) != 0 && errno != EINVAL) error = errno;
     if (::close(file) != 0 && error == 0) error = errno;
     return error;
@@ -105,13 +105,13 @@ int replace(const fs::path& path, std::string_view bytes) {
     const int file =
         ::open(unfinished.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode_t{0666});
     if (file < 0) return exists ? write_directly(path, bytes) : errno;
-    // What is not allowed to keep the permissions gets those of a new file.
+    // Where the process may not set the old permissions, the file keeps those of a new file.
     if (exists) (void)(::fchmod(file, old.st_mode & mode_t{07777}) == 0);
     int error = write_and_close(file, bytes, true);
     if (error == 0 && ::rename(unfinished.c_str(), path.c_str()) != 0) error = errno;
     if (error == 0) return 0;
     ::unlink(unfinished.c_str());
-    // A file that is mounted, as containers do, cannot be replaced.
+    // A file that is a mount point, as in containers, cannot be replaced.
     return error == EBUSY && exists ? write_directly(path, bytes) : error;
 }
 
@@ -170,7 +170,8 @@ void check_output_path(const fs::path& path) {
 }
 
 void prepare_output() {
-    // More than a program prints: stdio forgets the reason where it fails before the flush.
+    // The buffer holds more than a program prints, so that errors occur at the flush: stdio loses the
+    // reason of earlier ones.
     static std::array<char, 1 << 16> buffer;
     (void)std::signal(SIGXFSZ, SIG_IGN);
     static const bool is_buffered = ::isatty(STDOUT_FILENO) == 1 ||
@@ -183,7 +184,7 @@ void flush_standard_output() {
     std::cout.flush();
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) return;
     const int error = errno;
-    // Said once: nothing that is left over fails again at exit.
+    // Marks the stream as failed, so that the rest of its buffer does not fail again at exit.
     std::cout.setstate(std::ios::badbit);
     throw_stdout_error(error);
 }

@@ -13,9 +13,9 @@ namespace support {
 /// The sRGB encoding of a linear value, both clamped to 0 ... 1. NaN becomes 0.
 [[nodiscard]] double srgb_from_linear(double linear);
 
-/// Red, green and blue of linear pixels in 8-bit sRGB. Pixels that equal a neighbour are dithered, so
-/// that backgrounds show no bands: the mean over many is right, and a byte is off by less than 1. All
-/// others are rounded. Equal pixels make equal bytes.
+/// Red, green and blue of linear pixels in 8-bit sRGB. Dithers pixels that equal a neighbour, so that
+/// backgrounds show no bands: the mean over many pixels is right, and the error of a byte is less than 1.
+/// Rounds all other pixels. Equal images make equal bytes.
 [[nodiscard]] std::vector<std::uint8_t> srgb_bytes(std::span<const cl_float4> pixels);
 
 /// The bytes of a PNG file with an image of 3 bytes a pixel, row by row from the top.
@@ -37,8 +37,9 @@ enum class ImageFormat {
     exr,   ///< linear floats
 };
 
-/// The format that a file's name stands for: .png, .jpg or .jpeg, .pfm, .exr, in any case of letters;
-/// PNG for stdout and for what is no regular file. Throws InputError, with these, at any other name.
+/// The format of a file by its extension: .png, .jpg or .jpeg, .pfm, .exr, in upper or lower case. PNG
+/// for stdout and for anything but a regular file. For any other extension, throws InputError with a list
+/// of these.
 [[nodiscard]] ImageFormat image_format(const std::filesystem::path& path);
 
 [[nodiscard]] inline bool has_floats(ImageFormat format) {

@@ -137,7 +137,7 @@ std::string dropped_text(const MeshDrops& drops) {
     add(drops.nonfinite_triangles, "with NaN or infinite vertices");
     add(drops.out_of_range_triangles, "with indices out of range");
     add(drops.degenerate_triangles, "degenerate");
-    add(drops.unsplit_polygons, "polygons that cross themselves or are too intricate");
+    add(drops.unsplit_polygons, "polygons that cross themselves or are too complex");
     add(drops.points_and_lines, "points or lines");
     add(drops.bytes_after_end, "bytes after the end");
     return text.empty() ? "" : " (dropped: " + text + ")";
@@ -180,7 +180,7 @@ Mesh clean_mesh(const Mesh& source) {
         }
     }
     merge_vertices(source, mesh);
-    // Only normals from elsewhere turn triangles: those made here follow them.
+    // Only normals from the file reverse triangles. Normals that are computed here follow the triangles.
     turn_towards_normals(mesh);
     complete_normals(mesh);
     // Coincident triangles then start at the same corner, whatever their winding, and the

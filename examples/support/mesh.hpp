@@ -19,11 +19,11 @@ struct MeshDrops {
     std::uint64_t nonfinite_triangles = 0;     ///< faces that used one
     std::uint64_t out_of_range_triangles = 0;  ///< faces with an index beyond the vertices
     std::uint64_t degenerate_triangles = 0;    ///< triangles with two equal corners
-    std::uint64_t unsplit_polygons = 0;        ///< that cross themselves or take too long to split
-    std::uint64_t points_and_lines = 0;        ///< faces with less than three corners
-    std::uint64_t bytes_after_end = 0;         ///< of the file, after all that it declares
+    std::uint64_t unsplit_polygons = 0;        ///< polygons that cross themselves or take too long
+    std::uint64_t points_and_lines = 0;        ///< faces with fewer than three corners
+    std::uint64_t bytes_after_end = 0;         ///< bytes after all that the file declares
 
-    /// Faces with an area that are not drawn.
+    /// The number of dropped faces, without points and lines.
     [[nodiscard]] std::uint64_t triangles() const {
         return nonfinite_triangles + out_of_range_triangles + degenerate_triangles +
                unsplit_polygons;
@@ -31,7 +31,7 @@ struct MeshDrops {
     MeshDrops& operator+=(const MeshDrops& other);
 };
 
-/// " (dropped: 3 degenerate, 1 points or lines)"; empty where nothing was.
+/// " (dropped: 3 degenerate, 1 points or lines)"; empty if nothing was dropped.
 [[nodiscard]] std::string dropped_text(const MeshDrops& drops);
 
 /// The axis that points up in a file.
@@ -44,9 +44,9 @@ struct MeshMaterial {
     std::optional<float> opacity;          ///< 0 to 1; nothing where the file does not say
 };
 
-/// Indexed triangles with a normal at each vertex. Normals have length 1. The mean of a triangle's
-/// lies on the side from which its corners run counter-clockwise, but for normals that clean_mesh()
-/// made at sharp edges.
+/// Indexed triangles with a normal at each vertex. Normals have length 1. The mean of a triangle's normals
+/// points to the side from which its corners run counter-clockwise, except for normals that clean_mesh()
+/// computed at sharp edges.
 struct Mesh {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;
@@ -64,24 +64,24 @@ struct Mesh {
     bool ends_within_line = false;
 };
 
-/// Loads every mesh of a file: PLY, OBJ, glTF and GLB, OFF, STL, and what else Assimp reads. Reads
-/// regular files of up to 1 GiB. Polygons are triangulated, also concave ones. Vertices with equal
-/// position, normal and colour are merged, and unused ones left out; smooth normals are made where
-/// the file has none. Triangles that disagree with the file's normals are turned round. Throws InputError
-/// in one line that names the file, and the place in it, where the file is missing, no regular file,
-/// unreadable, empty, damaged or truncated, or has no triangle that can be drawn.
+/// Loads every mesh of a file: PLY, OBJ, glTF and GLB, OFF, STL, and the formats that Assimp reads. Reads
+/// regular files of up to 1 GiB. Triangulates polygons, including concave ones. Merges vertices with equal
+/// position, normal and colour, and leaves out unused ones. Computes smooth normals where the file has
+/// none. Reverses triangles that disagree with the file's normals. Throws InputError where the file is
+/// missing, not a regular file, unreadable, empty, damaged or truncated, or has no triangle that can be
+/// drawn. The message is one line that names the file and the place in it.
 [[nodiscard]] Mesh load_mesh(const std::filesystem::path& path);
 
-/// Merges equal vertices, leaves out vertices without a triangle, drops and counts what cannot be
-/// drawn, and makes the normals that are missing (of length 0). Each triangle starts at its vertex
-/// with the lowest index. What load_mesh does after reading; for meshes from elsewhere.
+/// Merges equal vertices, leaves out vertices without a triangle, drops and counts triangles that cannot
+/// be drawn, and computes missing normals (of length 0). Each triangle then starts at its vertex with the
+/// lowest index. load_mesh() does this after reading; call it for meshes from elsewhere.
 [[nodiscard]] Mesh clean_mesh(const Mesh& mesh);
 
 /// Moves the mesh to the origin and scales it so that its smallest enclosing sphere (to within a
 /// few percent) has radius 1. Coordinates up to the largest float are safe.
 void fit_to_unit_sphere(Mesh& mesh);
 
-/// The same for several meshes in common coordinates: one move and one scale for all.
+/// The same for several meshes in common coordinates: one translation and one scale for all.
 void fit_to_unit_sphere(std::span<Mesh* const> meshes);
 
 /// Turns the mesh so that the axis points along y. Handedness stays. UpAxis::unknown and y do

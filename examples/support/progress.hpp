@@ -7,8 +7,8 @@
 
 namespace support {
 
-/// Shows on stderr how far long work is: in one line that changes on a terminal, and elsewhere in a
-/// line now and then, first after ten seconds and then ever more seldom.
+/// Shows the progress of long work on stderr. On a terminal, one line changes. Elsewhere, a new line
+/// appears after ten seconds, and further lines after ever longer times.
 class Progress {
 public:
     /// `out` and `first` are for tests.
@@ -30,7 +30,7 @@ private:
     bool on_terminal_;
     int percent_ = -1;
     std::optional<Clock::time_point> start_ = {};  ///< of the work: the first update
-    std::chrono::milliseconds next_;               ///< when a line is due, from the start
+    std::chrono::milliseconds next_;               ///< time of the next line, from the start
 };
 
 }  // namespace support

@@ -49,7 +49,7 @@ std::string read_file(const std::string& kind, const std::filesystem::path& path
         if (bytes > limit_bytes)
             fail("has more than " + std::to_string(limit_bytes) + " bytes, the limit");
     };
-    // To open a FIFO for reading waits for a writer, unless O_NONBLOCK is set.
+    // Without O_NONBLOCK, opening a FIFO for reading waits for a writer.
     const Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
     if (file.number < 0) {
         if (errno == ENOENT || errno == ENOTDIR) fail("does not exist");

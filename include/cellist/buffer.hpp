@@ -16,7 +16,7 @@
 namespace cellist {
 
 /// `size()` elements of T in device memory. T has the layout that the kernels expect. Movable, not
-/// copyable; every use of a buffer that was moved from throws Error.
+/// copyable; every use of a moved-from buffer throws Error.
 template <class T>
 class Buffer {
     static_assert(std::is_trivially_copyable_v<T>, "a Buffer holds trivially copyable elements");

@@ -37,8 +37,8 @@ struct DeviceInfo {
 
 /// An OpenCL device with a context, a queue and a cache of built programs. Everything that is made
 /// from a Device shares them, and stays valid after the Device object is gone. Movable, not
-/// copyable; every use of a Device that was moved from throws Error. Several threads may use one Device
-/// and objects made from it, each object from one thread at a time.
+/// copyable; every use of a moved-from Device throws Error. Several threads may use one Device and objects
+/// made from it, each object from one thread at a time.
 class Device {
 public:
     /// The device that the environment variable CELLIST_DEVICE names, as in choose(selector); if it
@@ -50,9 +50,10 @@ public:
     /// selector, without regard to case. Throws Error, listing the devices, if there is none.
     [[nodiscard]] static Device choose(std::string_view selector);
 
-    /// Works on the caller's own context and queue. Several Devices may share a context: what a kernel of
-    /// one does with Lists and Buffers of another is ordered with the other's queue. In an out-of-order queue, every command of the
-    /// library starts after all that were enqueued before it, the caller's too. Events have times where
+    /// Works on the caller's own context and queue. Several Devices may share a context: where a kernel of
+    /// one uses Lists or Buffers of another, it runs in order with the commands of the other's queue. In an
+    /// out-of-order queue, every command of the library starts after all that were enqueued before it,
+    /// including the caller's. Events have times where
     /// the queue was made with CL_QUEUE_PROFILING_ENABLE.
     Device(cl::Context context, cl::CommandQueue queue);
 

@@ -8,14 +8,14 @@
 
 namespace cellist {
 
-/// Base of everything that the library throws, where the host has no memory for a result too. The
-/// message names the value and the limit.
+/// Base of everything that the library throws, including errors for a result that does not fit into host
+/// memory. The message names the value and the limit.
 class Error : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
 
-/// An OpenCL call failed, for the lack of memory of a device or of the driver among other reasons.
+/// An OpenCL call failed, for example because the device or the driver is out of memory.
 class OpenClError : public Error {
 public:
     OpenClError(std::string call, cl_int code, std::string log = {});

@@ -18,16 +18,16 @@ struct Source {
     std::string text = {};
     /// Stands before the line numbers in the compiler's messages.
     std::string file_name = "kernel";
-    /// Added to the build options, which start with "-cl-std=CL1.2 -cl-kernel-arg-info". Macros that
-    /// they define do not change the library's own text.
+    /// Added to the build options, which start with "-cl-std=CL1.2 -cl-kernel-arg-info". Macros in these
+    /// options do not change the library's own text.
     std::string options = {};
 };
 
-/// A kernel of the user's, built for a device. A device keeps the last programs, by source, types and
-/// options, and builds each of them once. A source with an #include of its own, or "-include" among its
-/// options, is built for every Kernel, with the files as they are then.
+/// A kernel from the user's source, built for a device. A device keeps the last 128 programs, by source,
+/// types and options, and builds each of them once. A source that includes the user's own files, by
+/// #include or by the option "-include", is built for every Kernel, with the current files.
 /// `#include <cellist/lists.clh>` and `<cellist/glm.clh>` need no path and do not count. Movable, not
-/// copyable; every use of a Kernel that was moved from throws Error.
+/// copyable; every use of a moved-from Kernel throws Error.
 class Kernel {
 public:
     /// Builds `code` and takes the kernel called `name` from it. `uses` names the types that the
@@ -52,12 +52,13 @@ public:
     /// elsewhere containers are read-only, and Lists::validate() counts the inserts that were refused.
     ///
     /// Arguments in the kernel's order: scalars, adapted structs, Buffer, Lists, cl::Buffer, cl::Image,
-    /// cl::Pipe, cl::Sampler, LocalMemory. Throws Error if their number, or the kind, size or type of
-    /// one does not fit the kernel's parameters; signs and the widths of vectors are not compared.
+    /// cl::Pipe, cl::Sampler, LocalMemory. Throws Error if their number, or the kind, size, type or
+    /// context of one does not fit the kernel's parameters; signs and the widths of vectors are not
+    /// compared.
     ///
-    /// Lists and Buffers of a Device with another queue of the same context are ordered by events: the
-    /// kernel waits for that queue, and that queue for the kernel. Memory without an owner, such as a
-    /// cl::Buffer, is the caller's to order: see Device::enqueue_wait.
+    /// Lists and Buffers may belong to a Device with another queue of the same context. The kernel then
+    /// waits for the commands that are on that queue, and later commands there wait for the kernel.
+    /// Memory without a Device, such as a cl::Buffer, is not ordered: see Device::enqueue_wait.
     template <class... Args>
     cl::Event run(const Range& range, const Args&... args) {
         detail::Arguments arguments;

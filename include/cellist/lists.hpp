@@ -26,8 +26,8 @@
 namespace cellist {
 
 /// The lists of all cells in device memory, one after the other: the records of cell c, or a member
-/// of each, are records[offsets[c]] ... records[offsets[c + 1] - 1]. There are offsets[cells] of them.
-/// The buffer has room for as many; for more where they were packed before their number was known.
+/// of each, are records[offsets[c]] ... records[offsets[c + 1] - 1]. There are offsets[cells] records.
+/// The buffer may have room for more, if the lists were packed while their build was pending.
 template <class T>
 struct Packed {
     Buffer<cl_uint> offsets;  ///< cells + 1
@@ -36,7 +36,7 @@ struct Packed {
 
 namespace detail {
 
-/// A member as an element of a buffer: std::array for an array.
+/// The type of a member as an element of a buffer: std::array for an array.
 template <class M>
 struct Element {
     using type = M;
@@ -54,10 +54,11 @@ struct Element<M[count]> {
 /// they can do. The heads take 4 bytes a cell, and a node takes the record and 4 bytes, rounded up to
 /// the alignment of both.
 ///
-/// Owned by value, movable, not copyable; every use of Lists that were moved from throws Error. What runs on the device is enqueued on the device's queue;
-/// calls that return results block until they have them. The others do not, with one exception: whatever
-/// uses lists with a pending build that may still change them ends that build, and blocks for it. Under
-/// Overflow::drop no build may, unless the storage is automatic.
+/// Owned by value, movable, not copyable; every use of moved-from Lists throws Error. Work for the device
+/// is enqueued on its queue. Calls that return results block until they have them. The others do not
+/// block, with one exception: a call that uses lists with a pending build finishes that build first, and
+/// blocks, if it may still change the lists. Under Overflow::drop a pending build cannot change them,
+/// unless the storage is automatic.
 template <class T>
 class Lists {
     static_assert(detail::Adapted<T>, "adapt the record with CELLIST_STRUCT first");
@@ -76,12 +77,11 @@ public:
     ~Lists() = default;
 
     /// Fills the lists anew: clears them, then runs `kernel(lists, args...)` over `range`. The lists
-    /// are the kernel's first parameters; `args` are the rest. What the lists held before is gone when
-    /// the kernel runs: a kernel that reads it runs before the build.
+    /// are the kernel's first parameters; `args` are the rest. The old records are gone when the kernel
+    /// runs: run a kernel that reads them before the build.
     ///
     /// Other containers among `args` are read-only. Where the kernel inserts into one, the build throws
-    /// Error, which names it. A container cannot be built, cleared, sorted or read while it is built;
-    /// this throws Error, too.
+    /// Error with a message that names the container.
     ///
     /// If the pool is too small, the overflow policy decides: grow enlarges it to the exact demand
     /// and runs the kernel again, which must insert the same records again; stop and a demand over
@@ -98,14 +98,16 @@ public:
     }
 
     /// The same for several inserting kernels: `insert` enqueues all of them with Kernel::run, and is
-    /// called again after the pool has grown.
+    /// called again after the pool has grown. `insert` cannot build, clear, sort or read these lists:
+    /// each of these throws Error.
     BuildReport build(std::invocable auto&& insert) { return core_->build(std::ref(insert)); }
 
-    /// Starts the same and does not block, but for a build of these lists that is still pending. The event completes after the first pass; get() runs more
-    /// of them if the pool was too small, or throws. Until then the lists are incomplete, unless the
-    /// policy is Overflow::drop: whatever uses them calls get() itself, blocks and throws in its place.
-    /// The kernel and the arguments that are memory must stay until then; the Lists object may go, and
-    /// get() returns the report all the same.
+    /// Starts the same build. Blocks only for an earlier build of these lists that is still pending. The
+    /// event completes after the first pass; get() runs more passes if the pool was too small, or throws.
+    /// Until then the lists are incomplete, unless the policy is Overflow::drop: a call that uses them
+    /// finishes the build itself, blocks, and throws what get() would throw. The kernel and the memory
+    /// among the arguments must stay alive until then. The Lists object may be destroyed before: get()
+    /// still returns the report.
     template <class... Args>
     [[nodiscard]] Pending<BuildReport> build_async(Kernel& kernel, const Range& range,
                                                    const Args&... args) {
@@ -137,7 +139,7 @@ public:
         return core_->build_slices(std::ref(insert), std::ref(read));
     }
 
-    /// Empties the lists; the pool keeps its capacity. Blocks for a pending build only, whatever its policy.
+    /// Empties the lists; the pool keeps its capacity. Blocks only for a pending build, under any policy.
     void clear() { core_->clear(); }
 
     /// Sorts every list by a scalar member: cellist_for_each then visits the least first, or the
@@ -151,8 +153,9 @@ public:
     ///
     /// Blocks until it is known how long the lists are. The first calls for a member compile kernels.
     /// Throws Error where links lead in circles, out of the pool, or from several lists to the same nodes,
-    /// or lists do not have the nodes of the last build, if there is a second pool. Offsets and counts of
-    /// the other storages are not looked at: validate() is. Whatever fails, sound lists hold what they held.
+    /// where offsets descend or leave the pool, or where the lists do not have as many nodes as the last
+    /// build stored. A sort without memory for more buffers checks nothing; validate() checks more.
+    /// Whatever fails, sound lists keep their records.
     template <class M>
     cl::Event sort(M T::*member, Order order = Order::ascending) {
         return core_->sort(key_of(member, order), all_nodes);
@@ -161,12 +164,12 @@ public:
     /// The same by an OpenCL C expression of `record`, of integer or float type, such as
     /// "record.depth * record.depth". Throws OpenClError with the compiler's log if it does not
     /// compile, and Error if it is more than one expression, or writes: commas outside of parentheses,
-    /// quoted text, directives, assignments, pointers and calls that write are refused. Where its value
-    /// differs from call to call, as after a division by 0 or by get_global_id(), lists are in no order,
-    /// and no record is lost.
+    /// quoted text, directives, assignments, pointers and calls that write are refused. No record is lost
+    /// where its value differs from call to call, as after a division by 0 or with get_global_id(). The
+    /// lists are then in no particular order.
     ///
-    /// The expression is your code, and runs as part of the kernel. What a device does with undefined
-    /// operations is its own risk: an index outside of an array can end the process on a CPU.
+    /// The expression is your code, and runs inside the library's kernel. Undefined operations are your
+    /// risk: an index outside an array can end the process on a CPU.
     cl::Event sort_by(const std::string& expression, Order order = Order::ascending) {
         return core_->sort({expression, 64, order}, all_nodes);
     }
@@ -212,9 +215,9 @@ public:
 
     /// A copy of all lists in host memory. Blocks.
     [[nodiscard]] HostLists<T> download() const { return download_async().get(); }
-    /// The same without blocking, where the records take up to 256 MiB and no more than the device can
-    /// allocate at once. While a build under Overflow::drop is pending, that counts for the whole pool,
-    /// which is copied: the number of records is not known.
+    /// The same. Does not block if the records take up to 256 MiB and fit into one allocation of the
+    /// device. While a build under Overflow::drop is pending, the number of records is not known: the call
+    /// copies the whole pool, and these limits are for the pool.
     [[nodiscard]] Pending<HostLists<T>> download_async() const {
         struct State {
             std::vector<cl_uint> offsets;
@@ -235,11 +238,11 @@ public:
     }
 
     /// A copy of all lists in device memory, one after the other, for kernels that leave the
-    /// container. Does not block, but for a pending build that may still change the lists. While a build
+    /// container. Blocks only for a pending build that may still change the lists. While a build
     /// under Overflow::drop is pending, the copy has room for capacity_nodes() records.
     [[nodiscard]] Packed<T> pack() const { return pack<T, T>(""); }
-    /// The same of a single member: an array of its own where a reader needs only the key. A member of
-    /// any type: scalar, vector, adapted struct; `cl_float[4]` gives `Packed<std::array<cl_float, 4>>`.
+    /// The same for a single member, for readers that need only that member. Its type may be a scalar, a
+    /// vector, an adapted struct or an array; `cl_float[4]` gives `Packed<std::array<cl_float, 4>>`.
     template <class M>
     [[nodiscard]] Packed<typename detail::Element<M>::type> pack(M T::*member) const {
         return pack<M, typename detail::Element<M>::type>(std::string(".") +
@@ -247,11 +250,11 @@ public:
     }
 
     /// Checks that every allocated node is reached from exactly one head, exactly once. Finds any
-    /// corruption of heads and links in time proportional to cells + nodes. Sums are compared with those
-    /// of the last build; inserts outside of one are counted. Where lists are contiguous, their borders
-    /// are compared with the counts of the last build (Storage::counted), or counts with a hash of these
-    /// (Storage::fixed): a word that has changed is found. Takes one bit of device memory a node in
-    /// Storage::linked, and 4 bytes a cell in Storage::counted. Blocks.
+    /// corruption of heads and links in time proportional to cells + nodes. Compares sums with those of the
+    /// last build, and counts inserts outside a build. Storage::counted compares the offsets with the
+    /// counts of the last build; Storage::fixed compares the counts with a hash of those counts. So both
+    /// find a word that has changed. Takes one bit of device memory a node in Storage::linked, and 4 bytes
+    /// a cell in Storage::counted. Blocks.
     [[nodiscard]] Validation validate() const { return core_->validate()(); }
     /// The same without blocking.
     [[nodiscard]] Pending<Validation> validate_async() const {
@@ -262,9 +265,9 @@ public:
     [[nodiscard]] const Shape& shape() const { return core_->shape(); }
     /// Nodes in the pool.
     [[nodiscard]] std::uint64_t capacity_nodes() const { return core_->capacity_nodes(); }
-    /// Device memory of every buffer that the container keeps: heads, nodes, counters, and what sorts,
-    /// downloads and builds keep for the next ones. budget_bytes bounds it but for sums over the cells: 20
-    /// bytes for 4,096 cells, and some hundred bytes.
+    /// Device memory of every buffer that the container keeps: heads, nodes, counters, and the buffers that
+    /// sorts, downloads and builds keep for reuse. budget_bytes bounds it, except for sums over the cells:
+    /// 20 bytes for each 4,096 cells, and some hundred bytes.
     [[nodiscard]] std::uint64_t pool_bytes() const { return core_->pool_bytes(); }
     /// The storage in use: in Storage::automatic the one of the last build.
     [[nodiscard]] Storage storage() const { return core_->storage_in_use(); }
@@ -288,7 +291,7 @@ private:
     static const BuildReport& finish(detail::Build& build) {
         return detail::ListsCore::finish(build).front();
     }
-    /// What `member` selects of each record, of type M.
+    /// The value of type M that `member` selects from each record.
     template <class M, class E>
     Packed<E> pack(const std::string& member) const {
         static_assert(detail::KnownOnDevice<M> && sizeof(E) == sizeof(M));
@@ -331,8 +334,8 @@ std::array<BuildReport, sizeof...(T)> build(std::invocable auto&& insert, Lists<
         *detail::ListsCore::start_build({&lists.core()...}, std::ref(insert)));
 }
 
-/// Starts the same and does not block; see Lists::build_async. Where one of the containers has gone
-/// before get(), the others are empty and get() throws Error.
+/// Starts the same and does not block; see Lists::build_async. If one of the containers is destroyed before
+/// get(), the others are empty and get() throws Error.
 template <class... T>
     requires(sizeof...(T) > 0)
 [[nodiscard]] Pending<std::array<BuildReport, sizeof...(T)>> build_async(

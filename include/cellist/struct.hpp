@@ -39,8 +39,8 @@
                   " differs from OpenCL C's: name every member, in order of declaration, and use " \
                   "types that are aligned as on the device")
 
-// Whether an aggregate takes one initialiser more than members are named. Structs with constructors are
-// taken apart into as many names instead: where they have more members, the compiler says how many.
+// Whether an aggregate takes one initialiser more than members are named. A struct with constructors is
+// decomposed by a structured binding with as many names: if it has more members, the compiler says so.
 #define CELLIST_STRUCT_HAS_MORE(type, ...)                                                         \
     []<class T>(const T*) {                                                                        \
         if constexpr (std::is_aggregate_v<T> &&                                                    \

@@ -101,7 +101,7 @@ typedef struct cellist_shard {
     CELLIST_UINT rejected_low;  // inserts into cells outside the shape, 64 bits in two words
     CELLIST_UINT rejected_high;
     CELLIST_UINT pool_full;  // behind the last shard: not 0 once every shard was seen full
-    CELLIST_UINT late_low;   // behind the last shard: inserts outside of a build, in two words
+    CELLIST_UINT late_low;   // only after the last shard: inserts outside a build, in two words
     CELLIST_UINT late_high;
     CELLIST_UINT open_reservations;  // that hold nodes which no link has taken
     CELLIST_UINT missing_low;        // nodes that reservations lack, 64 bits in two words

@@ -1,11 +1,11 @@
-// A mesh file names other files. Only those in its folder are read, and nothing of others is shown.
+// Of the files that a mesh file names, only those in its folder are read. Messages show nothing of others.
 #include "meshes/support/gltf_text.hpp"
 #include "meshes/support/loaded.hpp"
 
 namespace cellist::test {
 namespace {
 
-// A folder with a file, and a folder for meshes within it, which is removed first.
+// A folder with a file, and in it a folder for meshes, which is emptied first.
 struct Place {
     Folder outer;
     std::filesystem::path inner = outer / "meshes";

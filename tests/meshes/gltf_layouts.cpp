@@ -34,7 +34,7 @@ public:
     }
 
 private:
-    // A transform without rounding errors, and the coordinates that it brings to their places.
+    // A transform without rounding errors, and coordinates that it maps to those of the plain mesh.
     void choose_transform() {
         switch (random_() % 5) {
             case 0:
@@ -82,7 +82,7 @@ private:
         }
     }
 
-    // Integers, which the node's transform brings to their places.
+    // Integer coordinates, which the node's transform maps to those of the plain mesh.
     void quantize(const std::string& name, int type, double scale, double offset,
                   bool is_normalized) {
         layout_ += name + " ";
@@ -275,7 +275,7 @@ private:
         scene_.add_primitive(primitive, node);
     }
 
-    // The joint is where the node was, so that the node's own transform must not count.
+    // The joint has the node's old transform, and the node's own transform must have no effect.
     void put_skin(json& primitive, json& node, std::size_t vertices) {
         layout_ += "skin ";
         std::vector<std::uint8_t> weights;
@@ -293,7 +293,7 @@ private:
                 {"weights", node.value("weights", json::array({0.5, 0}))}};
     }
 
-    // What draws no triangle.
+    // Adds parts that draw no triangle.
     void put_clutter() {
         json& root = scene_.root;
         if (once_in(random_, 3))

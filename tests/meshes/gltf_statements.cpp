@@ -1,5 +1,5 @@
-// What a glTF file says beyond its triangles: skins, scenes, indices, extensions. What is not
-// supported or makes no sense is refused with its place.
+// What a glTF file has besides triangles: skins, scenes, indices, extensions. Anything unsupported or
+// inconsistent is refused with its place.
 #include "meshes/support/gltf_text.hpp"
 #include "meshes/support/loaded.hpp"
 
@@ -25,7 +25,7 @@ float greatest(const support::Mesh& mesh, int axis) {
     return most;
 }
 
-// Loads what `change` makes of the square, and checks that the message names the place.
+// Loads the square after `change`, and checks that the message names the place.
 void check_refused(const std::string& place, const std::function<void(GltfScene&)>& change) {
     GltfScene scene = square();
     change(scene);

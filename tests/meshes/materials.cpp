@@ -1,4 +1,4 @@
-// Base colours and opacities of MTL files, glTF and what Assimp reads.
+// Base colours and opacities from MTL files, glTF files and the formats that Assimp reads.
 #include <cmath>
 
 #include "meshes/support/gltf_text.hpp"

@@ -139,8 +139,8 @@ TEST_CASE("OBJ files of 500 layouts give their mesh") {
     }
 }
 
-// The format does not say how much there should be, so a file that ends with a line may be whole:
-// it gives the first triangles.
+// An OBJ file does not declare its length, so a cut file that ends with a whole line loads: it gives the
+// first triangles.
 std::string problem_of_cut_obj(const Folder& folder, const std::string& bytes,
                                const PlainMesh& plain) {
     try {

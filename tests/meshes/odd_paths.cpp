@@ -1,4 +1,4 @@
-// What is no regular file is refused in one line, and never waited for.
+// A path that is not a regular file is refused in one line, without waiting.
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>

@@ -1,4 +1,4 @@
-// Formats that Assimp reads: placed and with their materials. What it cannot read is an error.
+// Assimp's formats load with their transforms and materials. A file that Assimp cannot read is an error.
 #include <cmath>
 #include <cstdint>
 

@@ -60,7 +60,7 @@ public:
     }
 
 private:
-    // A comment may stand between any two lines, and say anything.
+    // A comment may be between any two lines, with any text.
     void comment(std::string& text) {
         if (once_in(random_, 3))
             text += one_of<std::string>(random_, {"comment made by hand", "comment end_header",
@@ -80,7 +80,7 @@ private:
         return one_of(random_, types);
     }
 
-    // Properties that mean nothing here.
+    // Properties that the reader skips.
     void add_others(Row& layout, const std::string& prefix) {
         for (unsigned i = below(random_, 3); i > 0; --i) {
             Property property{prefix + std::to_string(i),

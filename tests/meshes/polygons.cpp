@@ -1,4 +1,4 @@
-// Polygons of any shape are split into triangles that cover just their inside.
+// Polygons of any shape are split into triangles that cover exactly their inside.
 #include <random>
 
 #include "mesh/polygon.hpp"
@@ -51,8 +51,8 @@ double turn(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// Random corners on a lattice; edges that cross are exchanged until none are left. Empty where
-// three corners of it are collinear, since it may touch itself then.
+// A polygon of random corners on a lattice; crossing edges are exchanged until none cross. Empty where
+// three corners are collinear, since the polygon may then touch itself.
 std::vector<glm::vec3> simple_polygon(std::mt19937& random, std::size_t count) {
     std::vector<glm::dvec2> p;
     for (std::size_t i = 0; i < count; ++i) p.emplace_back(random() % 1000, random() % 1000);

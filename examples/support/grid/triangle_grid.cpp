@@ -51,7 +51,7 @@ GridCells cells_around(std::span<const GridTriangle> triangles, int longest) {
     const glm::dvec3 size = high - low;
     const double side = std::max({size.x, size.y, size.z});
     const glm::dvec3 farthest = glm::max(glm::abs(low), glm::abs(high));
-    // Brings coordinates to 1 or less, but for those beyond 2^100.
+    // Scales coordinates to 1 or less, except those beyond 2^100.
     const double reach = std::max({farthest.x, farthest.y, farthest.z});
     const int exponent = reach > 0 ? std::clamp(std::ilogb(reach) + 1, -100, 100) : 0;
     // A single point still has a cell around it.

@@ -35,7 +35,7 @@ namespace {
 
 constexpr std::uint64_t limit_bytes = std::uint64_t{1} << 30;
 
-// Gives Assimp the mesh, which is in memory, and regular files in its folder. Others do not exist.
+// The file system that Assimp sees: the mesh, which is in memory, and regular files in its folder.
 class FolderFiles final : public Assimp::IOSystem {
 public:
     FolderFiles(const std::filesystem::path& path, const std::string& text,
@@ -135,7 +135,7 @@ private:
             textures_.push_back(source.GetTextureCount(aiTextureType_DIFFUSE) +
                                 source.GetTextureCount(aiTextureType_BASE_COLOR) +
                                 source.GetTextureCount(aiTextureType_OPACITY));
-            // What Assimp makes up for files without materials says nothing.
+            // Skips the default material that Assimp adds to files without materials.
             if (material.name == AI_DEFAULT_MATERIAL_NAME) continue;
             aiColor4D colour;
             float opacity = 1;
@@ -179,7 +179,7 @@ private:
 
     void append_vertices(const aiMesh& source, const glm::dmat4& transform) {
         const glm::dmat3 linear(transform);
-        // Cofactors instead of the inverse: normals of singular and of tiny transforms stay finite.
+        // Cofactors instead of the inverse keep the normals of singular and tiny transforms finite.
         const double sign = glm::determinant(linear) < 0 ? -1 : 1;
         const glm::dmat3 cofactors =
             sign * glm::dmat3(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
@@ -215,7 +215,7 @@ private:
     std::uint64_t poses_ = 0;
 };
 
-// Assimp turns COLLADA and 3DS to y up, and says in FBX files which axis it was.
+// Assimp turns COLLADA and 3DS files so that y points up. For FBX files it reports the axis.
 UpAxis up_axis(const aiScene& scene, const std::string& extension) {
     if (extension == ".dae" || extension == ".3ds") return UpAxis::y;
     int axis = -1, sign = 1;
@@ -251,7 +251,7 @@ RawMesh import(const std::filesystem::path& path, const std::string& text) {
 }  // namespace
 
 RawMesh read_with_assimp(const std::filesystem::path& path, const std::string& text) {
-    // Loaders hold a mesh several times over while they read it.
+    // Loaders hold several copies of a mesh while they read it.
     const ChildLimits limits{30 + static_cast<unsigned>(text.size() >> 20),
                              (std::uint64_t{1} << 31) + 64 * text.size(),
                              (std::uint64_t{1} << 30) + 64 * text.size()};

@@ -9,13 +9,12 @@
 
 namespace support {
 
-/// Makes a material of each colour that faces have.
+/// Makes a material for each colour of the faces.
 class ColourTable {
 public:
     explicit ColourTable(RawMesh& mesh) : mesh_(mesh) {}
 
-    /// The material of this linear colour and opacity. The opacity is left open where it is 1 in
-    /// files that have none.
+    /// The material of this linear colour and opacity. Leaves the opacity unset if the file has none.
     std::uint32_t material_of(const glm::vec4& colour, bool has_opacity) {
         const auto [entry, is_new] =
             materials_.try_emplace({colour.r, colour.g, colour.b, colour.a},
@@ -34,8 +33,7 @@ private:
     std::map<std::tuple<float, float, float, float>, std::uint32_t> materials_;
 };
 
-/// Says that the opacities of the vertices are all that the file says about opacity: a material for
-/// all faces with opacity 1.
+/// Gives all faces a material with opacity 1, so that only the opacities of the vertices count.
 inline void take_opacity_of_vertices(RawMesh& mesh) {
     MeshMaterial material;
     material.opacity = 1.0F;

@@ -24,10 +24,10 @@
 namespace support {
 namespace {
 
-// Elements that instances of meshes may add to those of the file, so that a small file stays small.
+// Elements that instances of meshes may add to those of the file. Bounds the memory for a small file.
 constexpr std::uint64_t limit_repeated_elements = std::uint64_t{1} << 26;
 
-// Extensions that change nothing that is drawn: positions, base colours and opacities.
+// Extensions that do not change what is drawn: positions, base colours and opacities.
 bool is_harmless(std::string_view extension) {
     constexpr std::array<std::string_view, 15> names = {"EXT_lights_image_based",
                                                         "KHR_animation_pointer",
@@ -49,7 +49,7 @@ bool is_harmless(std::string_view extension) {
            std::find(names.begin(), names.end(), extension) != names.end();
 }
 
-// Extensions for which a file that does not require them has data without them.
+// Extensions that are optional in a file only if it also has the plain data.
 bool has_fallback(std::string_view extension) {
     return extension == "KHR_draco_mesh_compression" || extension == "EXT_meshopt_compression" ||
            extension == "KHR_meshopt_compression" || extension == "KHR_materials_variants";
@@ -165,7 +165,7 @@ private:
         const GltfValue accessor = file_.element("accessors", position);
         if (!accessor.find("bufferView"))
             primitive.fail(
-                "has data for the extension 'KHR_draco_mesh_compression' only, which "
+                "has data only for the extension 'KHR_draco_mesh_compression', which "
                 "this program does not support");
     }
 
@@ -176,7 +176,7 @@ private:
         return out;
     }
 
-    // Where a file says that it quantises, positions and normals may be integers.
+    // Positions and normals may be integers only if the file uses KHR_mesh_quantization.
     [[nodiscard]] GltfAccessor open_vectors(const GltfValue& index,
                                             std::initializer_list<GltfFormat> quantized) {
         GltfAccessor accessor = quantized_ ? GltfAccessor(file_, index, {"VEC3"}, quantized)
@@ -211,7 +211,7 @@ private:
                            std::to_string(vertices));
     }
 
-    // Normals of 0 where the primitive has none.
+    // The normals; zeros where the primitive has none.
     [[nodiscard]] std::vector<glm::dvec3> read_normals(const GltfValue& attributes,
                                                        std::size_t vertices) {
         const auto normal = attributes.find("NORMAL");
@@ -295,7 +295,7 @@ private:
             // Joints replace the transform of the node.
             const glm::dmat4& matrix = skin ? skin->matrix_of(i) : world;
             if (skin || i == 0) {
-                // Cofactors instead of the inverse: normals of singular transforms stay finite.
+                // Cofactors instead of the inverse keep the normals of singular transforms finite.
                 const glm::dmat3 linear(matrix);
                 const bool is_negative = glm::determinant(linear) < 0;
                 if (i == 0) mirrored = is_negative;
@@ -328,7 +328,7 @@ private:
         charge(primitive, 3 * corners);
         if (mode == 4 && corners % 3 != 0)
             primitive.fail("has " + std::to_string(corners) +
-                           " corners of triangles, which is no multiple of 3");
+                           " corners of triangles, which is not a multiple of 3");
         const std::uint32_t material = use_material(primitive);
         const std::size_t triangles =
             mode == 4 ? corners / 3 : std::max<std::size_t>(corners, 2) - 2;

@@ -9,7 +9,7 @@
 namespace support {
 namespace {
 
-// Zeros that an accessor may have without a byte in the file, so that a small file stays small.
+// Zeros that an accessor may have without a byte in the file. Bounds the memory for a small file.
 constexpr std::size_t limit_zeros_bytes = std::size_t{1} << 28;
 
 constexpr std::array<std::pair<std::string_view, std::size_t>, 7> shape_components = {
@@ -64,7 +64,7 @@ std::string name_of(GltfFormat format) {
            (format.is_normalized ? " (normalized)" : "");
 }
 
-// The bytes of `count` elements, `stride` apart, which a view has to hold from `offset` on.
+// The bytes of `count` elements, `stride` apart, from `offset` on. Throws if the view is too short.
 std::string_view view_bytes(GltfFile& file, const GltfValue& place, std::size_t element_bytes,
                             std::size_t count, std::size_t& stride) {
     const GltfValue view = file.element("bufferViews", place.at("bufferView"));
@@ -142,7 +142,7 @@ void GltfAccessor::replace_sparse(GltfFile& file, const GltfValue& sparse) {
                                   false};
     if (index_format.type != GltfType::uint8 && index_format.type != GltfType::uint16 &&
         index_format.type != GltfType::uint32)
-        indices.at("componentType").fail("is no type of indices");
+        indices.at("componentType").fail("is not an index type");
     std::size_t index_stride = 0, value_stride = 0;
     const std::string_view index_bytes =
         view_bytes(file, indices, bytes_of(index_format.type), replaced, index_stride);
@@ -152,7 +152,7 @@ void GltfAccessor::replace_sparse(GltfFile& file, const GltfValue& sparse) {
         const auto index = static_cast<std::size_t>(
             load_number(index_bytes.data() + i * index_stride, index_format));
         if (index >= size_)
-            indices.fail("replaces element " + std::to_string(index) + ", the accessor has " +
+            indices.fail("names element " + std::to_string(index) + ", the accessor has " +
                          std::to_string(size_));
         std::memcpy(owned_.data() + index * element_bytes_, value_bytes.data() + i * value_stride,
                     element_bytes_);

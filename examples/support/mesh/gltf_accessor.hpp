@@ -32,11 +32,11 @@ inline constexpr GltfFormat gltf_float32{GltfType::float32, false};
 inline constexpr GltfFormat gltf_unit_uint8{GltfType::uint8, true};
 inline constexpr GltfFormat gltf_unit_uint16{GltfType::uint16, true};
 
-/// The elements of an accessor. All of them are known to lie within their buffer. Refers to the
-/// buffers of a GltfFile, which has to outlive it.
+/// The elements of an accessor, all of them checked to lie within their buffer. Refers to the buffers of
+/// a GltfFile, which must outlive it.
 class GltfAccessor {
 public:
-    /// `shape` is "SCALAR", "VEC3" and so on. Throws InputError at the accessor's place where it has
+    /// `shape` is "SCALAR", "VEC3" and so on. Throws InputError with the accessor's place if it has
     /// another shape, a format that is not among `formats`, or elements beyond its buffer.
     GltfAccessor(GltfFile& file, const GltfValue& index,
                  std::initializer_list<std::string_view> shapes,

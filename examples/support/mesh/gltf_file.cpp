@@ -23,8 +23,8 @@ std::uint32_t word_at(std::string_view text, std::size_t at) {
     return word;
 }
 
-// Arrays and objects within one another, and an upper bound of the values: what a parser needs of
-// the stack and of the memory.
+// The nesting depth of arrays and objects, which bounds the stack of a parser, and an upper bound of the
+// number of values, which bounds its memory.
 struct JsonExtent {
     std::size_t depth = 0, values = 1;
 };
@@ -101,7 +101,7 @@ std::optional<std::string> base64_decoded(std::string_view text) {
     return out;
 }
 
-// "http:" and the like. Letters of drives are no schemes.
+// Whether a URI starts with a scheme such as "http:". A drive letter is not a scheme.
 bool has_scheme(std::string_view uri) {
     const std::size_t colon = uri.find(':');
     return colon != std::string_view::npos && colon > 1 && uri.find_first_of("/?#") > colon;
@@ -233,7 +233,7 @@ std::string_view GltfFile::load_buffer(const GltfValue& buffer, std::size_t numb
         std::string data = percent_decoded(text.substr(comma + 1));
         if (text.substr(0, comma).ends_with(";base64")) {
             std::optional<std::string> decoded = base64_decoded(data);
-            if (!decoded) uri->fail("has characters that are not of base64");
+            if (!decoded) uri->fail("has characters that base64 does not allow");
             data = *std::move(decoded);
         }
         bytes = std::move(data);

@@ -15,15 +15,15 @@ namespace support {
 /// The JSON and the buffers of a glTF 2 file, as text or GLB.
 class GltfFile {
 public:
-    /// Throws InputError where the file is damaged, is not version 2, or its JSON is nested too
-    /// deeply. `path` and `text` have to outlive the object.
+    /// Throws InputError where the file is damaged or not version 2, or its JSON is nested too deeply.
+    /// `path` and `text` must outlive the object.
     GltfFile(const std::filesystem::path& path, std::string_view text);
 
     [[nodiscard]] GltfValue root() const { return {path_, json_, ""}; }
 
-    /// Elements of an array of the root; 0 where it is missing.
+    /// The number of elements of an array of the root; 0 where it is missing.
     [[nodiscard]] std::size_t count(const std::string& array) const;
-    /// The element of an array of the root, where the index is a value of the file.
+    /// The element of an array of the root, at an index that is a value in the file.
     [[nodiscard]] GltfValue element(const std::string& array, const GltfValue& index) const;
     [[nodiscard]] std::size_t element_index(const std::string& array, const GltfValue& index) const;
 
@@ -31,7 +31,7 @@ public:
     /// only.
     [[nodiscard]] std::string_view buffer(const GltfValue& index);
 
-    /// Of all that was read.
+    /// The size of all bytes that were read.
     [[nodiscard]] std::uint64_t size_bytes() const { return size_bytes_; }
     [[nodiscard]] std::uint64_t bytes_after_end() const { return bytes_after_end_; }
     /// Whether the file says that it uses an extension.

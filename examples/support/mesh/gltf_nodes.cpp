@@ -23,7 +23,7 @@ glm::dmat3 rotation(const GltfValue& node) {
     if (!value) return glm::dmat3(1);
     const std::vector<double> q = value->numbers(4);
     const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    if (!(length > 0) || !std::isfinite(length)) value->fail("is no rotation");
+    if (!(length > 0) || !std::isfinite(length)) value->fail("is not a rotation");
     const double x = q[0] / length, y = q[1] / length, z = q[2] / length, w = q[3] / length;
     return {{1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)},
             {2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)},
@@ -69,7 +69,7 @@ GltfNodes place_gltf_nodes(const GltfFile& file, std::vector<std::string>& notes
         children[i] = node_indices(file, array[i], "children");
         for (const std::size_t child : children[i]) {
             if (has_parent[child])
-                array[i].fail("node " + std::to_string(child) + " is a child twice");
+                array[i].fail("node " + std::to_string(child) + " is listed as a child twice");
             has_parent[child] = true;
         }
     }
@@ -77,7 +77,7 @@ GltfNodes place_gltf_nodes(const GltfFile& file, std::vector<std::string>& notes
     std::vector<std::size_t> roots, stack;
     for (std::size_t i = 0; i < count; ++i)
         if (!has_parent[i]) roots.push_back(i);
-    // Every node has one parent at most, so those that no root reaches form circles.
+    // Every node has at most one parent, so the nodes that no root reaches form cycles.
     std::size_t reached = 0;
     for (stack = roots; !stack.empty(); ++reached) {
         const std::size_t node = stack.back();
@@ -87,8 +87,7 @@ GltfNodes place_gltf_nodes(const GltfFile& file, std::vector<std::string>& notes
             stack.push_back(child);
         }
     }
-    if (reached != count)
-        array.fail("nodes that are children of one another: " + std::to_string(count - reached));
+    if (reached != count) array.fail("nodes that form cycles: " + std::to_string(count - reached));
 
     stack = roots;
     if (const std::size_t scenes = file.count("scenes"); scenes > 0) {

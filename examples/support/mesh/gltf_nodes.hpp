@@ -15,8 +15,8 @@ struct GltfNodes {
     std::vector<std::size_t> drawn;  ///< nodes of the scene that is drawn
 };
 
-/// Places the nodes of a file. Its scene is the default one, or else the first, or else all nodes.
-/// Throws InputError where the nodes are no trees: a node with two parents, or a circle.
+/// Places the nodes of a file: those of the default scene, else of the first scene, else all nodes.
+/// Throws InputError where the nodes do not form trees: a node with two parents, or a cycle.
 [[nodiscard]] GltfNodes place_gltf_nodes(const GltfFile& file, std::vector<std::string>& notes);
 
 }  // namespace support

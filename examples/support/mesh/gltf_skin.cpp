@@ -40,7 +40,7 @@ GltfSkin::GltfSkin(GltfFile& file, const std::vector<glm::dmat4>& joints,
             {file, *joint_index, {"VEC4"}, {{GltfType::uint8, false}, {GltfType::uint16, false}}},
             {file, *weight_index, {"VEC4"}, {gltf_float32, gltf_unit_uint8, gltf_unit_uint16}}};
         if (set.joints.size() != vertices || set.weights.size() != vertices)
-            joint_index->fail("has another count than POSITION");
+            joint_index->fail("does not have as many elements as POSITION");
         for (std::size_t v = 0; v < vertices; ++v)
             for (std::size_t i = 0; i < 4; ++i)
                 if (set.joints.index(v, i) >= joints.size() && set.weights.number(v, i) != 0)
@@ -61,7 +61,7 @@ glm::dmat4 GltfSkin::matrix_of(std::size_t vertex) const {
             matrix += joints_[set.joints.index(vertex, i)] * weight;
             sum += weight;
         }
-    // Weights add up to 1 but for rounding.
+    // The sum of the weights is 1 except for rounding.
     if (sum > 0) return matrix / sum;
     const std::size_t first = influences_[0].joints.index(vertex);
     return joints_[std::min(first, joints_.size() - 1)];

@@ -17,7 +17,7 @@ namespace support {
 /// How joints move the vertices of a primitive, by its attributes JOINTS_n and WEIGHTS_n.
 class GltfSkin {
 public:
-    /// `joints` has to outlive the object.
+    /// `joints` must outlive the object.
     GltfSkin(GltfFile& file, const std::vector<glm::dmat4>& joints, const GltfValue& attributes,
              std::size_t vertices);
 

@@ -12,7 +12,7 @@ void GltfValue::fail(const std::string& what) const {
 }
 
 std::optional<GltfValue> GltfValue::find(const std::string& key) const {
-    if (!json_->is_object()) fail("is no object");
+    if (!json_->is_object()) fail("is not an object");
     const auto member = json_->find(key);
     if (member == json_->end()) return std::nullopt;
     return GltfValue(*path_, *member, place_ + "/" + key);
@@ -25,7 +25,7 @@ GltfValue GltfValue::at(const std::string& key) const {
 }
 
 std::size_t GltfValue::size() const {
-    if (!json_->is_array()) fail("is no array");
+    if (!json_->is_array()) fail("is not an array");
     return json_->size();
 }
 
@@ -40,11 +40,11 @@ std::uint64_t GltfValue::integer(std::uint64_t greatest) const {
         if (value >= 0 && value <= static_cast<double>(greatest) && value == std::floor(value))
             return json_->get<std::uint64_t>();
     }
-    fail("is no integer from 0 to " + std::to_string(greatest));
+    fail("is not an integer from 0 to " + std::to_string(greatest));
 }
 
 double GltfValue::number() const {
-    if (!json_->is_number()) fail("is no number");
+    if (!json_->is_number()) fail("is not a number");
     return json_->get<double>();
 }
 
@@ -57,12 +57,12 @@ std::vector<double> GltfValue::numbers(std::size_t count) const {
 }
 
 const std::string& GltfValue::text() const {
-    if (!json_->is_string()) fail("is no string");
+    if (!json_->is_string()) fail("is not a string");
     return json_->get_ref<const std::string&>();
 }
 
 bool GltfValue::boolean() const {
-    if (!json_->is_boolean()) fail("is no boolean");
+    if (!json_->is_boolean()) fail("is not a boolean");
     return json_->get<bool>();
 }
 

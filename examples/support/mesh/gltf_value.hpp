@@ -19,9 +19,9 @@ public:
 
     [[noreturn]] void fail(const std::string& what) const;
 
-    /// The member of an object, where it has one.
+    /// The member of an object; nothing if it is missing.
     [[nodiscard]] std::optional<GltfValue> find(const std::string& key) const;
-    /// The member of an object, which has to have one.
+    /// The member of an object; throws InputError if it is missing.
     [[nodiscard]] GltfValue at(const std::string& key) const;
     /// Elements of an array.
     [[nodiscard]] std::size_t size() const;

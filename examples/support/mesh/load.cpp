@@ -24,7 +24,7 @@ std::string lower_extension(const std::filesystem::path& path) {
     return extension;
 }
 
-// The contents decide where a format has a mark of its own, the name decides for the others.
+// The contents decide for formats that start with a known mark; the extension decides for the others.
 MeshReader reader_of(const std::filesystem::path& path, std::string_view text) {
     const std::string extension = lower_extension(path);
     if (text.starts_with("ply\n") || text.starts_with("ply\r") || extension == ".ply")
@@ -42,7 +42,7 @@ Mesh load_mesh(const std::filesystem::path& path) {
     const std::string name = quoted("mesh", path);
     try {
         std::string text = read_file("mesh", path, limit_bytes);
-        // A mark that some editors put before text in UTF-8.
+        // Skips the byte order mark that some editors put before UTF-8 text.
         if (text.starts_with("\xEF\xBB\xBF") && !is_binary_stl(text)) text.erase(0, 3);
         RawMesh raw = reader_of(path, text)(path, text);
         std::string().swap(text);

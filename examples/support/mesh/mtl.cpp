@@ -60,7 +60,7 @@ private:
     void add(const std::vector<std::string_view>& words) {
         const std::string_view keyword = words[0];
         if (keyword == "Kd") {
-            // "Kd spectral FILE" and "Kd xyz X Y Z" are of no use to most programs.
+            // "Kd spectral FILE" and "Kd xyz X Y Z" are rare, and not supported.
             if (words.size() != 2 && words.size() != 4)
                 fail("'Kd' has " + std::to_string(words.size() - 1) +
                      " values; it needs red, green and blue");
@@ -70,7 +70,7 @@ private:
                     keyword, words[words.size() == 2 ? 1 : static_cast<std::size_t>(i) + 1]);
             material_->look.base_colour = colour;
         } else if (keyword == "d" || keyword == "Tr") {
-            // "d -halo" lets the opacity fall off towards the silhouette; its factor is that of the
+            // With "d -halo" the opacity changes towards the silhouette; the factor is that of the
             // middle.
             const std::size_t at = words.size() > 1 && words[1] == "-halo" ? 2 : 1;
             if (words.size() != at + 1) fail("'" + std::string(keyword) + "' needs one number");

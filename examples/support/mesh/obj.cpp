@@ -23,7 +23,7 @@
 namespace support {
 namespace {
 
-// A corner of a polygon: indices of its position and normal, from 0, as far as the file has them.
+// A corner of a polygon: the indices of its position and, if the file has one, its normal, from 0.
 struct Corner {
     std::uint32_t position = RawMesh::no_vertex;
     std::uint32_t normal = RawMesh::no_vertex;
@@ -92,7 +92,7 @@ private:
             fail("'" + std::string(keyword) + "' runs another file, which is not supported");
         } else if (!ignored_statements.contains(keyword) &&
                    !free_form_statements.contains(keyword)) {
-            fail("'" + printable(keyword) + "' is no statement of an OBJ file");
+            fail("'" + printable(keyword) + "' is not an OBJ statement");
         }
     }
 
@@ -122,17 +122,18 @@ private:
         colours_.resize(positions_.size(), glm::vec4(no_colour));
         for (std::size_t i = 4; i <= values; ++i) {
             const float value = number(i);
-            if (!(value >= 0)) fail("a colour is '" + printable(words_[i]) + "', the least is 0");
+            if (!(value >= 0))
+                fail("a colour is '" + printable(words_[i]) + "', it must be 0 or more");
             colours_.back()[static_cast<int>(i) - 4] = value;
             if (i < 7) greatest_colour_ = std::max(greatest_colour_, value);
         }
     }
 
-    // An index of the file counts from 1, or back from the last value so far.
+    // An index in the file counts from 1; a negative index counts back from the last value so far.
     [[nodiscard]] std::uint32_t index(std::string_view word, std::size_t so_far) const {
         const std::optional<std::int64_t> value = parse_integer(word);
         if (!value) {
-            // An integer of any length is at most out of range.
+            // An integer with too many digits counts as an index out of range.
             const bool digits =
                 word.size() > 18 && std::all_of(word.begin() + 1, word.end(),
                                                 [](char c) { return c >= '0' && c <= '9'; });
@@ -146,7 +147,7 @@ private:
         return static_cast<std::uint32_t>(from_zero);
     }
 
-    // "7", "7/3", "7//2", "7/3/2", and what exporters make of them where parts are missing: "7/".
+    // "7", "7/3", "7//2", "7/3/2". Some exporters leave parts out: "7/".
     [[nodiscard]] Corner corner(std::string_view word) {
         Corner corner;
         const std::size_t first = std::min(word.find('/'), word.size());
@@ -210,7 +211,7 @@ private:
         return out;
     }
 
-    // A mesh without its materials can be drawn, so a file that is missing is no error.
+    // A mesh can be drawn without its materials, so a missing file is not an error.
     void material_file(const std::string& name) {
         if (!material_files_.insert(name).second) return;
         const std::string shown = "material file '" + printable(name) + "'";
@@ -219,7 +220,7 @@ private:
         if (!path)
             note(shown + " is not in the mesh's folder and was not read");
         else if (!std::filesystem::is_regular_file(*path, error))
-            note(shown + " does not exist or is no regular file");
+            note(shown + " does not exist or is not a regular file");
         else if (read_mtl(*path, library_))
             note(shown + " ends within a line and may be cut off");
     }
@@ -257,7 +258,7 @@ private:
                                   std::to_string(undefined) + ", the first is '" + first + "'");
     }
 
-    // A vertex of the mesh has one normal. Those that corners use with further normals are repeated.
+    // A vertex of the mesh has one normal, so a position that has several normals is repeated.
     void resolve_corners() {
         mesh_.positions = std::move(positions_);
         mesh_.colours = linear_colours();
@@ -303,8 +304,8 @@ private:
         return entry->second;
     }
 
-    // Vertex colours are not in the format's specification. Programs that write them take them from
-    // images, so they are sRGB, from 0 to 1 or to 255.
+    // Vertex colours are not in the specification of the format. Programs take them from images, so they
+    // are sRGB, from 0 to 1 or from 0 to 255.
     [[nodiscard]] std::vector<glm::vec4> linear_colours() {
         std::vector<glm::vec4> colours = std::move(colours_);
         const auto fraction = [](float value, float greatest) {
@@ -323,7 +324,7 @@ private:
             if (count > 0) mesh_.notes.push_back(what + ": " + std::to_string(count));
         };
         add("free-form curves and surfaces, which are not drawn", free_forms_);
-        add("vertices with a weight other than 1, which polygons ignore", weights_);
+        add("vertices with a weight other than 1, which is ignored", weights_);
         add("corners that name a normal that does not exist, so that theirs is made",
             missing_normals_);
     }

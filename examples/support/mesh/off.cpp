@@ -10,8 +10,8 @@
 namespace support {
 namespace {
 
-// Geomview's object file format, in text. A vertex and a face stand on a line each; files without
-// colours may also separate all numbers by blanks alone.
+// Reads Geomview's object file format, in text. Each vertex and each face is on a line of its own; in
+// files without colours, only blanks need separate the numbers.
 class OffReader {
 public:
     OffReader(const std::filesystem::path& path, const std::string& text)
@@ -23,7 +23,7 @@ public:
         read_header();
         vertex_count_ = read_count("vertices");
         face_count_ = read_count("faces");
-        // The number of edges means nothing and may be missing.
+        // The number of edges is not used, and may be missing.
         if (!words_.at_line_end()) (void)read_count("edges");
         has_row_a_line_ = first_vertex_ends_line() || words_.has_lines(vertex_count_ + face_count_);
         for (std::uint64_t i = 0; i < vertex_count_; ++i) read_vertex(i);
@@ -66,7 +66,7 @@ private:
         if (word == "4OFF" || word == "nOFF" || word == "4nOFF")
             fail("has the header '" + name + "': vertices of 4 and more dimensions are not read");
         if (word != "OFF" && word != "off")
-            fail("has '" + printable(name) + "' where the header 'OFF' has to be");
+            fail("has '" + printable(name) + "' instead of the header 'OFF'");
         ahead = words_;
         if (ahead.next_word() == "BINARY") fail("says BINARY: only OFF files in text are read");
     }
@@ -77,7 +77,7 @@ private:
             throw InputError(quoted("mesh", path_) + " is truncated: it has no number of " + what);
         const auto count = parse_integer(word);
         if (!count || *count < 0)
-            fail("has '" + printable(word) + "' where the number of " + what + " has to be");
+            fail("has '" + printable(word) + "' instead of the number of " + what);
         return static_cast<std::uint64_t>(*count);
     }
 
@@ -96,11 +96,11 @@ private:
 
     double number(std::string_view word) const {
         const auto value = parse_number(word);
-        if (!value) fail("has '" + printable(word) + "' where a number has to be");
+        if (!value) fail("has '" + printable(word) + "' instead of a number");
         return *value;
     }
 
-    // A colour is raw until all are known: see use_colours().
+    // The colours of the file, whose range is known only when all are read: see use_colours().
     glm::vec4 read_colour(std::size_t channels) {
         glm::vec4 colour(0, 0, 0, no_alpha);
         for (std::size_t i = 0; i < channels; ++i) {
@@ -153,14 +153,14 @@ private:
         if (word.empty()) fail_truncated(face_count_, "faces", i);
         const auto count = parse_integer(word);
         if (!count || *count < 0)
-            fail("has '" + printable(word) + "' where the number of corners of a face has to be");
+            fail("has '" + printable(word) + "' instead of the number of corners of a face");
         for (std::int64_t k = 0; k < *count; ++k) {
             const std::string_view corner =
                 has_row_a_line_ ? words_.next_word_on_line() : words_.next_word();
             if (corner.empty() && words_.at_end()) fail_truncated(face_count_, "faces", i);
             if (corner.empty())
-                fail("has a face of " + std::to_string(*count) + " corners and " +
-                     std::to_string(k) + " of them");
+                fail("has only " + std::to_string(k) + " corners of a face of " +
+                     std::to_string(*count));
             const auto index = parse_integer(corner);
             if (!index) fail("has the vertex '" + printable(corner) + "'");
             const bool is_vertex = *index >= 0 && *index < RawMesh::no_vertex;

@@ -16,7 +16,7 @@ std::uint32_t index_of(double value) {
     return is_index ? static_cast<std::uint32_t>(value) : RawMesh::no_vertex;
 }
 
-// Values of one element, by property. What nobody asks for is skipped.
+// The values of one element, by property. Skips properties that want() did not name.
 struct Row {
     explicit Row(const PlyElement& e)
         : element(e), values(e.properties.size(), 0), wanted(e.properties.size(), false) {}
@@ -47,7 +47,7 @@ struct Row {
     std::vector<double> list;  // of the list that is wanted; one at most
 };
 
-// Where an element keeps its colour, and how far its channels go.
+// The properties of an element that are its colour, and the greatest value of a channel.
 class Colour {
 public:
     explicit Colour(Row& row) {
@@ -210,7 +210,7 @@ private:
         Row row(element);
         want_indices(row);
         const Colour colour(row);
-        // Colours of vertices say more than those of faces. Strips have none.
+        // Colours of vertices replace those of faces. Strips have no colours.
         Row vertex_row(*header_.find("vertex"));
         const bool has_colours =
             colour.any() && !Colour(vertex_row).any() && header_.find("tristrips") == nullptr;

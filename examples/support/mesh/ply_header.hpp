@@ -39,8 +39,8 @@ struct PlyHeader {
     [[nodiscard]] const PlyElement* find(std::string_view element) const;
 };
 
-/// Reads the header of a PLY file. Comments may stand anywhere, lines end in LF, CR or CRLF. Throws
-/// InputError with the line that is wrong.
+/// Reads the header of a PLY file. Comments may be on any line; lines end in LF, CR or CRLF. Throws
+/// InputError with the number of the line that is wrong.
 [[nodiscard]] PlyHeader read_ply_header(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace support

@@ -15,8 +15,8 @@
 
 namespace support {
 
-/// The values of a PLY file in text. The usual layout has an element on each line; others separate
-/// all values by blanks alone.
+/// The values of a text PLY file. The usual layout has one element on each line; in others, any blanks
+/// separate the values.
 class PlyText {
 public:
     PlyText(const std::filesystem::path& path, const std::string& text, const PlyHeader& header)
@@ -36,7 +36,7 @@ public:
         const std::string_view word = words_.next_word();
         if (word.empty()) return std::nullopt;
         const auto value = parse_number(word);
-        if (!value) fail("has '" + printable(word) + "' where a number has to be");
+        if (!value) fail("has '" + printable(word) + "' instead of a number");
         return value;
     }
 
@@ -46,7 +46,7 @@ public:
         return true;
     }
 
-    /// After each element. Where the first one ends its line, the others have to.
+    /// Call this after each element. If the first one ends its line, all others must end theirs.
     void end_row(const PlyElement& element) {
         if (is_first_row_ && words_.at_line_end()) has_row_a_line_ = true;
         is_first_row_ = false;
@@ -55,7 +55,7 @@ public:
                  "': it, or the line before, has too many or too few values");
     }
 
-    /// Bytes from the first word after all elements.
+    /// The number of bytes from the first word after all elements.
     std::uint64_t bytes_left() {
         const std::string_view word = words_.next_word();
         return word.empty() ? 0 : size_bytes_ - data_ - words_.offset() + word.size();

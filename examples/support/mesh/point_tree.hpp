@@ -10,19 +10,19 @@
 
 namespace support {
 
-/// Points in a plane, found by triangle: a k-d tree (Bentley 1975) from which points can be taken.
+/// A k-d tree of points in a plane (Bentley 1975) that finds points in a triangle. Points can be removed.
 class PointTree {
 public:
     using Triangle = std::array<glm::dvec2, 3>;
 
-    /// Holds these points from now on: indices into `points`.
+    /// Replaces the contents by these points, which are indices into `points`.
     void build(std::span<const glm::dvec2> points, std::vector<std::uint32_t> indices);
     void remove(std::uint32_t index);
 
     /// The index with the greatest `depth(index)` of at least 0 among the points in or near a
-    /// counter-clockwise triangle; `none` where there is none. The depth of a point in the triangle
-    /// has to be twice the area that it spans with the edge from the third corner to the first, or
-    /// -1 for points to be passed over. Counts in `steps` what it looked at.
+    /// counter-clockwise triangle; `none` where there is none. `depth` of a point in the triangle must
+    /// return twice the area that the point spans with the edge from the third corner to the first, or
+    /// -1 to skip the point. Adds its work to `steps`.
     template <class Depth>
     [[nodiscard]] std::uint32_t deepest(const Triangle& triangle, std::uint64_t& steps,
                                         const Depth& depth) const;
@@ -40,8 +40,8 @@ private:
         std::uint32_t held = 0;  // points not removed
     };
 
-    /// The greatest depth that a point of the node's box may have in the triangle; -1 where the box
-    /// lies beside it.
+    /// An upper bound of the depth of the points in the node's box; -1 where the box is outside the
+    /// triangle.
     static double bound(const Node& node, const Triangle& triangle);
 
     std::vector<Node> nodes_;

@@ -11,8 +11,8 @@
 namespace support {
 namespace {
 
-// Twice the signed area. The differences and products of floats are exact in double where their
-// magnitudes are near each other, so that the sign is right.
+// Twice the signed area. Differences and products of floats of similar magnitude are exact in double, so
+// the sign is right.
 double turn(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     return (b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x);
 }
@@ -41,7 +41,7 @@ bool PolygonSplitter::make_ring(std::span<const glm::vec3> corners) {
     return ring_.size() > 2;
 }
 
-// Fills points_ with the corners in the plane, counter-clockwise; false where they have no area.
+// Fills points_ with the corners in the plane, counter-clockwise; false if their area is 0.
 bool PolygonSplitter::project(std::span<const glm::vec3> corners) {
     const glm::dvec3 origin(corners[ring_[0]]);
     glm::dvec3 normal(0), extent(0);
@@ -56,7 +56,7 @@ bool PolygonSplitter::project(std::span<const glm::vec3> corners) {
     const int axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
     const double largest = std::max({extent.x, extent.y, extent.z});
     area_ = size[axis];
-    // Less than the rounding of the corners makes.
+    // An area smaller than the rounding error of the corners counts as 0.
     if (!(area_ > 1e-14 * largest * largest)) return false;
     int u = (axis + 1) % 3, v = (axis + 2) % 3;
     if (normal[axis] < 0) std::swap(u, v);
@@ -74,7 +74,7 @@ void PolygonSplitter::make_nodes() {
         nodes_.push_back({i, i == 0 ? count - 1 : i - 1, i + 1 == count ? 0 : i + 1, none});
 }
 
-// Whether the boundary turns round once, as that of every polygon without crossings does.
+// Whether the boundary makes one full turn, as that of every polygon without crossings does.
 bool PolygonSplitter::turns_once() const {
     double sum = 0;
     for (const Node& node : nodes_) {
@@ -105,7 +105,7 @@ std::uint32_t PolygonSplitter::node_facing(std::uint32_t corner, std::uint32_t e
         const glm::dvec2 &before = place(node.previous), &here = place(n),
                          &after = place(node.next);
         if (here == b) {
-            // The boundary touches the ear's tip: it may come from within.
+            // The boundary touches the tip of the ear, and may reach it from inside the ear.
             const auto depth = [&](const glm::dvec2& q) {
                 return std::min(turn(place(tip.previous), b, q), turn(b, place(tip.next), q));
             };
@@ -173,7 +173,7 @@ void PolygonSplitter::clip(std::uint32_t ear, std::vector<Triangle>& triangles) 
     update(after);
 }
 
-// Lets two nodes at one place go on along each other's way.
+// Swaps the successors of two nodes at one place.
 void PolygonSplitter::exchange(std::uint32_t a, std::uint32_t b) {
     std::swap(nodes_[a].next, nodes_[b].next);
     nodes_[nodes_[a].next].previous = a;
@@ -182,7 +182,7 @@ void PolygonSplitter::exchange(std::uint32_t a, std::uint32_t b) {
     update(b);
 }
 
-// Cuts along the diagonal, or where the boundary touches itself: at the ear's tip, or on its edges.
+// Cuts along the diagonal, or where the boundary touches itself at the tip or on an edge of the ear.
 void PolygonSplitter::cut(std::uint32_t ear, std::uint32_t deepest) {
     const std::uint32_t before = nodes_[ear].previous, after = nodes_[ear].next;
     const glm::dvec2 p = place(deepest), a = place(before), b = place(ear), c = place(after);
@@ -240,7 +240,7 @@ PolygonSplitter::Result PolygonSplitter::split(std::span<const glm::vec3> corner
         else
             queue_.push_back(i);
     }
-    // Four turns to the left are one round.
+    // Four left turns of less than 180 degrees each make exactly one full turn.
     const bool is_convex_quad = count == 4 && reflex.empty();
     if (!is_convex_quad && !turns_once()) return Result::crossing;
     if (reflex.empty()) {

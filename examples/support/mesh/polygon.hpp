@@ -12,11 +12,11 @@
 
 namespace support {
 
-/// Splits polygons into triangles: clips a convex corner where no other corner lies in its triangle,
-/// else cuts the polygon in two along the diagonal from it to the deepest of these (Meisters 1975).
-/// Signed areas decide, in the coordinate plane that the polygon's normal is nearest to. Only reflex
-/// corners can be the deepest; a tree finds them. Each search gives a triangle or a diagonal, so
-/// their number is linear.
+/// Splits polygons into triangles. Clips a convex corner if no other corner lies in its triangle. Else
+/// cuts the polygon in two along the diagonal from that corner to the deepest corner in the triangle
+/// (Meisters 1975). Signed areas decide, in the coordinate plane that is nearest to the polygon's. Only
+/// reflex corners can be the deepest; a tree finds them. Each search gives a triangle or a diagonal, so
+/// the number of searches is linear.
 class PolygonSplitter {
 public:
     enum class Result {
@@ -28,15 +28,15 @@ public:
     using Triangle = std::array<std::uint32_t, 3>;
 
     /// Appends triangles whose corners are indices into `corners`, with the polygon's winding. Their
-    /// areas, seen along the normal, add up to the polygon's. Equal neighbours and spikes without
-    /// area are left out; the polygon may touch itself. Appends nothing where it does not split.
-    /// Corners have to be finite; there are three at least.
+    /// projected areas add up to the area of the polygon. Leaves out equal neighbours and spikes without
+    /// area. The polygon may touch itself. Appends nothing if the polygon cannot be split. There must be
+    /// at least three corners, all finite.
     Result split(std::span<const glm::vec3> corners, std::vector<Triangle>& triangles);
 
 private:
     static constexpr std::uint32_t none = 0xFFFFFFFF;
 
-    // A place on the boundary. Cuts put several at one corner.
+    // A place on the boundary. After cuts, several nodes may be at one corner.
     struct Node {
         std::uint32_t corner;  // of ring_ and points_
         std::uint32_t previous, next;

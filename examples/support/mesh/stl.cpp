@@ -35,7 +35,7 @@ bool is_text(std::string_view text) {
     (void)words.rest_of_line();
     const std::string_view next = words.next_word();
     if (same_word(next, "facet") || same_word(next, "endsolid")) return true;
-    // The number of triangles of a binary file has a byte of 0.
+    // A binary file has a zero byte in its number of triangles.
     return text.substr(0, header_bytes).find('\0') == std::string_view::npos;
 }
 
@@ -53,7 +53,7 @@ RawMesh read_binary(const std::filesystem::path& path, std::string_view bytes) {
     const std::string name = quoted("mesh", path);
     if (bytes.size() < header_bytes)
         throw InputError(name + " is truncated: it has " + std::to_string(bytes.size()) +
-                         " bytes, a binary STL file has 84 at least");
+                         " bytes, a binary STL file has at least 84");
     const std::uint64_t count = little_endian(bytes, 80);
     const std::uint64_t held = (bytes.size() - header_bytes) / triangle_bytes;
     if (count > held)
@@ -99,8 +99,8 @@ private:
             throw InputError(quoted("mesh", path_) + " is truncated: no " + wanted +
                              " follows facet " + std::to_string(mesh_.face_ends.size()));
         throw InputError(quoted("mesh", path_) + " is damaged: line " +
-                         std::to_string(words_.line()) + " has '" + printable(word) + "' where " +
-                         wanted + " has to be");
+                         std::to_string(words_.line()) + " has '" + printable(word) +
+                         "' instead of " + wanted);
     }
 
     void expect(std::string_view keyword) {

@@ -7,11 +7,11 @@
 
 namespace support {
 
-/// A number of a text file, in any locale: "1", "+1.5e-3", "nan", "-inf". The whole word must be
-/// the number; hexadecimal numbers are none. A magnitude beyond double becomes infinity or zero.
+/// Reads a number of a text file, in any locale: "1", "+1.5e-3", "nan", "-inf". The whole word must be
+/// the number, and must not be hexadecimal. A magnitude beyond double becomes infinity or zero.
 [[nodiscard]] std::optional<double> parse_number(std::string_view word);
 
-/// An integer with an optional sign. Magnitudes beyond 64 bits are no integers.
+/// Reads an integer with an optional sign, of up to 64 bits.
 [[nodiscard]] std::optional<std::int64_t> parse_integer(std::string_view word);
 
 /// A magnitude beyond float becomes infinity.
@@ -20,8 +20,7 @@ namespace support {
 /// A linear colour channel from an sRGB one (IEC 61966-2-1), both 0 to 1.
 [[nodiscard]] float linear_from_srgb(double value);
 
-/// A word of a file for a message: control characters become '?', and 40 characters at most are
-/// kept.
+/// A word of a file for a message: at most 40 characters, control characters replaced by '?'.
 [[nodiscard]] std::string printable(std::string_view word);
 
 /// Walks through the words and lines of a text. LF, CR and CRLF end a line. Blanks and tabs
@@ -36,9 +35,9 @@ public:
     [[nodiscard]] std::string_view next_word_on_line();
     /// Whether no word follows on this line.
     [[nodiscard]] bool at_line_end() const;
-    /// Whether `count` lines with words follow at least, the rest of this line included.
+    /// Whether at least `count` lines with words follow, including the rest of this line.
     [[nodiscard]] bool has_lines(std::uint64_t count) const;
-    /// What is left of this line, without its end, and moves to the next line.
+    /// Returns the rest of this line, without its end, and moves to the next line.
     std::string_view rest_of_line();
 
     [[nodiscard]] bool at_end() const { return at_ >= text_.size(); }

@@ -7,9 +7,9 @@
 
 namespace support {
 
-/// Walks through the lines of an OBJ or MTL file. LF, CR and CRLF end a line; a backslash at its end
-/// continues it on the next one, but not in a comment, where it may end the path of a folder. A byte
-/// order mark is skipped.
+/// Walks through the lines of an OBJ or MTL file. LF, CR and CRLF end a line. A backslash at its end
+/// continues the line on the next one, except in a comment, where it may end a Windows path. Skips a byte
+/// order mark.
 class TextLines {
 public:
     explicit TextLines(std::string_view text);
@@ -21,9 +21,9 @@ public:
     [[nodiscard]] std::string_view line() const { return line_; }
     /// The number of the line's first part. The first line is 1.
     [[nodiscard]] std::uint64_t number() const { return number_; }
-    /// Whether the text ends within this line, so that it may have been cut off.
+    /// Whether the text ends within this line, so that it may be truncated.
     [[nodiscard]] bool is_open() const { return is_open_; }
-    /// Whether a backslash promises more, and the text ends.
+    /// Whether the text ends after a backslash that continues the line.
     [[nodiscard]] bool is_unfinished() const { return is_unfinished_; }
 
 private:
@@ -43,7 +43,7 @@ void split(std::string_view line, std::vector<std::string_view>& words);
 /// The line up to the first '#'.
 [[nodiscard]] std::string_view without_comment(std::string_view line);
 
-/// What follows the first word of a line, which may have blanks and '#' within.
+/// The text after the first word of a line. It may contain blanks and '#'.
 [[nodiscard]] std::string_view name_of(std::string_view line);
 
 }  // namespace support

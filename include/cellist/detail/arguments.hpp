@@ -37,7 +37,7 @@ public:
         std::size_t size;    ///< in bytes
         std::string type;   ///< in OpenCL C: of a value, of a buffer's elements; empty if not known
         bool is_container;  ///< the nodes of a container, which hold records of this type
-        /// Whose queue orders the uses of this memory; null for memory of the user's own.
+        /// The device whose queue orders the uses of this memory; null for the user's own memory.
         const DeviceState* owner;
     };
     /// A container that takes no inserts: no build of it is under way.
@@ -93,7 +93,7 @@ public:
         arguments_.push_back({kind, offset, size, {}, false, nullptr});
     }
 
-    /// The arguments of another launch behind these.
+    /// Appends the arguments of another launch.
     void append(const Arguments& others) {
         for (const ClosedLists& closed : others.closed_)
             closed_.push_back({closed.lists, closed.index + arguments_.size()});

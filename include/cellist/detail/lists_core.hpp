@@ -75,17 +75,17 @@ public:
     /// Enqueues the reading of every list's length; `lengths` has them when it has arrived.
     [[nodiscard]] Reading read_lengths(std::vector<cl_uint>& lengths) const;
 
-    /// Enqueues the reading of all lists: cells + 1 offsets, and where `allocate` says, given the most
-    /// there can be, the records. Blocks where they are too many to be copied at once, and for a pending
-    /// build that may still change the lists.
+    /// Enqueues the reading of all lists: cells + 1 offsets, and the records. `allocate` takes the most
+    /// records that there can be, and returns where they go. Blocks where there are too many records to
+    /// copy at once, and for a pending build that may still change the lists.
     void download(Arrival& done, std::vector<cl_uint>& offsets,
                   const std::function<void*(std::uint64_t)>& allocate) const;
 
     /// Enqueues the writing of cells + 1 offsets, calls `allocate` with the most records there can be,
     /// and enqueues the copy of a value of each record to the buffer that it returns, one list after the
-    /// other. `declaration` declares a variable for a value in OpenCL C; `member` selects the value where
-    /// it stands after a record, e.g. ".depth", and is empty for the whole record. Blocks for a pending
-    /// build that may still change the lists.
+    /// other. `declaration` declares a variable for a value in OpenCL C. `member`, appended to a record,
+    /// selects the value, e.g. ".depth"; it is empty for the whole record. Blocks for a pending build
+    /// that may still change the lists.
     void pack(const cl::Buffer& offsets,
               const std::function<const cl::Buffer&(std::uint64_t)>& allocate,
               const std::string& declaration, const std::string& member) const;
@@ -115,12 +115,12 @@ public:
     void settle_for_commands() const;
     /// Throws Error where the function that inserts uses the container that it fills.
     void refuse_while_open() const;
-    /// The same, and where a slice of it is read.
+    /// The same, and throws Error where the caller is reading a slice of the container.
     void refuse_build() const;
 
     /// Whether kernels may insert now.
     [[nodiscard]] bool is_open() const;
-    /// Enqueues the reading of the inserts that were refused for there was no build: low and high word.
+    /// Enqueues the reading of the number of inserts that were refused outside a build: low and high word.
     [[nodiscard]] Reading read_late(std::array<cl_uint, 2>& words) const;
     /// E.g. "lists of Hit of shape 17 x 3".
     [[nodiscard]] std::string description() const;
@@ -139,8 +139,8 @@ public:
 
 private:
     [[nodiscard]] ListSorter& sorter();
-    /// Throws Error where no Lists object refers to a container that was built: the function that inserts
-    /// has replaced it.
+    /// Throws Error where no Lists object refers to the built container any more, because the function
+    /// that inserts has replaced it.
     static void refuse_orphan(const std::shared_ptr<ListsCore>& self);
     BuildReport build_once(const std::function<void()>& insert);
     void measure_walk(Trial& trial) const;

@@ -17,7 +17,7 @@ namespace cellist::detail {
 
 struct DeviceState;
 
-/// A device, and a sum of the memory that is made for one owner on it.
+/// A device, and the total size of the memory that one owner has on it.
 class MemoryOwner {
 public:
     explicit MemoryOwner(std::shared_ptr<DeviceState> state) : state_(std::move(state)) {}
@@ -27,7 +27,7 @@ public:
     DeviceState* operator->() const { return state_.get(); }
     DeviceState& operator*() const { return *state_; }
 
-    /// Bytes of all memory of this owner that there is now.
+    /// Size of the memory that this owner has now.
     [[nodiscard]] std::uint64_t bytes() const { return *bytes_; }
 
 private:
@@ -40,7 +40,7 @@ private:
 
 [[noreturn]] void throw_no_host_memory(std::uint64_t count, std::size_t element_bytes);
 
-/// Elements for a result in host memory. Throws Error where there is no room for them.
+/// Host memory for the elements of a result. Throws Error where there is not enough.
 template <class T>
 [[nodiscard]] std::vector<T> host_memory(std::uint64_t count) {
     try {
@@ -59,7 +59,7 @@ public:
     /// OpenClError where there is no memory; some drivers of GPUs tell so only at the first use.
     Memory(std::shared_ptr<DeviceState> state, std::uint64_t count, std::size_t element_bytes,
            const char* what = "buffer");
-    /// The same; its size counts as the owner's as long as it is there.
+    /// The same; its size counts towards the owner's total while the memory exists.
     Memory(const MemoryOwner& owner, std::uint64_t count, std::size_t element_bytes,
            const char* what)
         : Memory(owner.state_, count, element_bytes, what) {
@@ -73,7 +73,7 @@ public:
     ~Memory() = default;
 
     [[nodiscard]] const cl::Buffer& cl() const { return buffer_; }
-    /// Throws Error where there is none: of memory that was moved from.
+    /// Throws Error if the memory was moved from.
     [[nodiscard]] const std::shared_ptr<DeviceState>& device() const { return state_.pointer(); }
     [[nodiscard]] std::uint64_t size_bytes() const { return size_bytes_; }
 
@@ -91,7 +91,7 @@ public:
     void fill(const void* pattern, std::size_t pattern_bytes, std::size_t bytes);
 
 private:
-    /// A part of an owner's sum.
+    /// A part of an owner's total.
     class Share {
     public:
         Share() = default;

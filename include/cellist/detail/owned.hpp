@@ -8,7 +8,7 @@
 
 namespace cellist::detail {
 
-/// The pointer of a movable class to what it owns. Every use after a move throws Error.
+/// A pointer from an object of a movable class to what it owns. Every use after a move throws Error.
 template <class Pointer>
 class Owned {
 public:
@@ -17,7 +17,7 @@ public:
         : pointer_(std::move(pointer)), what_(what) {}
 
     [[nodiscard]] const Pointer& pointer() const {
-        if (!pointer_) throw Error(std::string(what_) + " is used that was moved from");
+        if (!pointer_) throw Error(std::string(what_) + " is used after it was moved from");
         return pointer_;
     }
     [[nodiscard]] auto* get() const { return pointer().get(); }

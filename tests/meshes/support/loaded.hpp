@@ -16,7 +16,7 @@ inline support::Mesh load_text(const std::string& name, const std::string& text)
     return support::load_mesh(folder.write(name, text));
 }
 
-/// The message that refuses the file: one line that names it.
+/// The message of the error that refuses the file. Checks that it is one line that names the file.
 inline std::string refusal(const std::string& name, const std::string& text) {
     const auto error = error_of<support::InputError>([&] { (void)load_text(name, text); });
     const std::string message = error.what();

@@ -40,7 +40,7 @@ struct OddFile {
     std::string bytes;
 };
 
-/// What loading it gives: the plain mesh and no drops, or a word about the difference.
+/// Loads the file. Empty if it gives the plain mesh without drops, else a text that says how it differs.
 inline std::string problem_of_whole(const Folder& folder, const OddFile& file,
                                     const PlainMesh& plain) {
     try {
@@ -58,8 +58,8 @@ inline void require_one_line(const std::string& message, const std::string& name
     REQUIRE(message.find(name) != std::string::npos);
 }
 
-/// A file cut after `size` bytes is refused in one line; or gives the plain mesh; or says that it
-/// may be cut, or that faces were dropped.
+/// Cuts the file after `size` bytes. It must be refused in one line, give the plain mesh, or report that
+/// it may be cut or that faces were dropped.
 inline std::string problem_of_cut(const Folder& folder, const OddFile& file, std::size_t size,
                                   const PlainMesh& plain) {
     const std::string name = "cut-" + file.name;
@@ -88,7 +88,7 @@ inline void check_cuts(const Folder& folder, const OddFile& file, const PlainMes
     }
 }
 
-/// Changes random bytes. The file is refused in one line, or gives a mesh that can be drawn.
+/// Changes random bytes. The file must be refused in one line, or give a mesh that can be drawn.
 inline void check_flips(const Folder& folder, const OddFile& file, Random& random,
                         std::size_t count) {
     const std::string name = "flipped-" + file.name;
@@ -112,7 +112,7 @@ inline void check_flips(const Folder& folder, const OddFile& file, Random& rando
     }
 }
 
-/// A number as text files write it, in one of many ways, without error for multiples of 1/64.
+/// A number in one of the many notations of text files, exact for multiples of 1/64.
 inline std::string number_text(Random& random, double value) {
     char text[64];
     switch (random() % 6) {

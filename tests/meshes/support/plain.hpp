@@ -15,8 +15,8 @@
 
 namespace cellist::test {
 
-/// What a mesh file says: the oracle of the tests. Coordinates are multiples of 1/64, so that few
-/// decimals and every binary type for fractions hold them without error.
+/// The mesh that a file describes: the oracle of the tests. Coordinates are multiples of 1/64, so that few
+/// decimals and every floating-point type hold them exactly.
 struct PlainMesh {
     std::vector<glm::dvec3> positions;
     std::vector<std::vector<std::uint32_t>> faces;
@@ -127,9 +127,8 @@ inline bool lies_in(const glm::dvec3& point, const std::vector<glm::dvec3>& corn
     return inside;
 }
 
-/// Says how a loaded mesh differs from the plain one; empty where it does not. Triangles are
-/// compared with their winding. Polygons have to be covered by triangles of their area that lie
-/// within them.
+/// Says how a loaded mesh differs from the plain one; empty if it does not. Compares triangles with their
+/// winding. Each polygon must be covered by triangles that lie within it and have its area.
 inline std::string difference(const support::Mesh& loaded, const PlainMesh& plain) {
     if (plain.has_triangles_only()) {
         std::vector<PlacedTriangle> expected;
