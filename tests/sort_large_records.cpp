@@ -102,6 +102,11 @@ TEST_CASE("records of up to 64 KiB are sorted, packed and downloaded") {
         sort_in_every_way<Odd>(900, CL_DEVICE_TYPE_GPU, storage);
     }
     SECTION("of 65,540 bytes, as on a CPU") {
+        // Kernels insert by value, and a GPU has no stack of that size for each of its work-items.
+        if (device().info().type == CL_DEVICE_TYPE_GPU) {
+            WARN("SKIP: records of 65,540 bytes are too large for a work-item of a GPU");
+            return;
+        }
         sort_in_every_way<Large>(60, CL_DEVICE_TYPE_CPU, storage);
     }
 }

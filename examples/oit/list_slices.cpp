@@ -28,10 +28,14 @@ public:
           node_bytes_(sizeof(Node) +
                       (options.storage == cellist::Storage::linked ? sizeof(cl_uint) : 0)),
           head_bytes_(
-              bytes_of_empty({.storage = options.storage, .capacity_nodes = 0, .slots = 0})),
+              bytes_of_empty({.storage = options.storage, .capacity_nodes = 0, .slots = 0}, sorts)),
+          sort_bytes_(
+              head_bytes_ -
+              bytes_of_empty({.storage = options.storage, .capacity_nodes = 0, .slots = 0}, false)),
           count_bytes_(bytes_of_empty({.storage = cellist::Storage::counted,
                                        .overflow = cellist::Overflow::drop,
-                                       .capacity_nodes = 0})),
+                                       .capacity_nodes = 0},
+                                      false)),
           fragments_(source.device(), source.shape(), within_budget(options)),
           pass_(source.pass(kernels::lists_cl, "lists.cl", fragments_)),
           reader_(source.screen_kernel(reader.text, reader.file_name, reader.kernel, fragments_)) {}
@@ -64,13 +68,18 @@ public:
 private:
     [[nodiscard]] std::uint64_t budget() const { return *source_.frame().memory_bytes; }
 
-    [[nodiscard]] std::uint64_t bytes_of_empty(const cellist::ListsOptions& options) const {
-        return cellist::Lists<Node>(source_.device(), source_.shape(), options).pool_bytes();
+    // What lists take without nodes, and with what they keep for sorts.
+    [[nodiscard]] std::uint64_t bytes_of_empty(const cellist::ListsOptions& options,
+                                               bool sorts) const {
+        cellist::Lists<Node> lists(source_.device(), source_.shape(), options);
+        if (sorts) lists.sort(&Node::key);
+        return lists.pool_bytes();
     }
 
     // Empty lists can be made under any budget; that it is too small is said when lists are built.
     [[nodiscard]] cellist::ListsOptions within_budget(cellist::ListsOptions options) const {
-        options.budget_bytes = std::max(budget(), head_bytes_ + count_bytes_) - count_bytes_;
+        options.budget_bytes =
+            std::max(budget(), head_bytes_ + count_bytes_) - count_bytes_ - sort_bytes_;
         return options;
     }
 
@@ -94,7 +103,8 @@ private:
     FragmentSource& source_;
     bool sorts_;
     std::uint64_t node_bytes_;
-    std::uint64_t head_bytes_;   // of all pixels, whatever the lists hold
+    std::uint64_t head_bytes_;   // of all pixels, whatever the lists hold, and of their sorts
+    std::uint64_t sort_bytes_;   // the part of it that only sorts need
     std::uint64_t count_bytes_;  // of the counts by which slices are chosen
     cellist::Lists<Node> fragments_;
     raster::Pass pass_;

@@ -125,8 +125,11 @@ void require_all_options(const std::string& help, std::vector<Row> rows, const a
     for (const Row& row : rows) {
         INFO(row.arguments << ": " << row.key);
         known.insert(row.option);
-        const json report = report_of("gearworks " + row.arguments);
-        CHECK(report["scene"] == "gearworks");
+        // --up is for files; options are read before their contents.
+        const bool of_file = row.option == "--up";
+        const json report =
+            report_of((of_file ? CELLIST_FOG_PATH " " : "gearworks ") + row.arguments);
+        CHECK(report["scene"] == (of_file ? "fog.cl" : "gearworks"));
         const json::json_pointer key(row.key);
         REQUIRE(report.contains(key));
         CHECK(report[key] == row.value);

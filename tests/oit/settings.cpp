@@ -101,7 +101,7 @@ TEST_CASE("the text of a setting is read as that setting") {
     const oit::Frame frame = frame_of(
         scene, {.samples = 2, .depth_range = true, .depth_scale = oit::DepthScale::reversed});
     for (const oit::Setting& setting : settings_for(frame, 100)) {
-        std::istringstream words("cellist-oit knot.obj " + text(setting));
+        std::istringstream words("cellist-oit gearworks " + text(setting));
         std::vector<std::string> arguments;
         for (std::string word; words >> word;) arguments.push_back(word);
         std::vector<const char*> pointers;
