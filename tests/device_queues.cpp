@@ -46,19 +46,19 @@ struct Scene {
         : cl_device(device().queue().getInfo<CL_QUEUE_DEVICE>()),
           context(cl_device),
           owner(context, cl::CommandQueue(context, cl_device, properties)),
-          user(context, cl::CommandQueue(context, cl_device, properties)),
-          gate(context) {}
+          user(context, cl::CommandQueue(context, cl_device, properties)) {}
     /// What the user's queue does from now on waits for open().
     void close() {
-        gate = cl::UserEvent(context);
-        user.enqueue_wait({gate});
+        gate.emplace(context);
+        user.enqueue_wait({*gate});
     }
-    void open() { gate.setStatus(CL_COMPLETE); }
+    void open() { gate->setStatus(CL_COMPLETE); }
 
     cl::Device cl_device;
     cl::Context context;
     Device owner, user;
-    cl::UserEvent gate;
+    /// NVIDIA's driver waits for ever at the end of a context with an event that nobody has set.
+    std::optional<cl::UserEvent> gate;
 };
 
 bool is_complete(const cl::Event& event) {
