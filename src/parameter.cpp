@@ -264,7 +264,7 @@ void ArgumentCheck::operator()(std::size_t index, const Parameter& parameter,
         fail(kind_name(parameter.kind), kind_name(found.kind));
     if (missing)
         fail(kind_name(parameter.kind),
-             found.kind == Kind::sampler ? "an empty sampler" : "an empty buffer");
+             found.kind == Kind::sampler ? "an empty sampler" : "an empty buffer or image");
     if (is_object && found.context != device_.context())
         fail("memory of " + device_.info.name, "memory of another context");
 

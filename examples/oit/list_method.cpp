@@ -54,6 +54,8 @@ public:
         const Quality& quality = source.frame().quality;
         sorts_ = needs_sorting(quality, reader);
         may_sort_on_the_way_ = !reader && sorts_;
+        // What a sort keeps counts for --memory from the first frame.
+        if (sorts_ && source.frame().memory_bytes) fragments_->sort(&Node::key);
         reader_.emplace(kernel_of(reader_of(quality, reader)));
     }
 

@@ -104,7 +104,12 @@ int replace(const fs::path& path, std::string_view bytes) {
         path.parent_path() / (".cellist-" + std::to_string(std::random_device{}()));
     const int file =
         ::open(unfinished.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode_t{0666});
-    if (file < 0) return exists ? write_directly(path, bytes) : errno;
+    if (file < 0) {
+        const int why = errno;
+        // A folder that takes no new file may hold one that can be written. A full disk may not.
+        const bool is_closed = why == EACCES || why == EPERM || why == EROFS;
+        return exists && is_closed ? write_directly(path, bytes) : why;
+    }
     // Where the process may not set the old permissions, the file keeps those of a new file.
     if (exists) (void)(::fchmod(file, old.st_mode & mode_t{07777}) == 0);
     int error = write_and_close(file, bytes, true);

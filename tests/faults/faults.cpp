@@ -67,7 +67,8 @@ bool fails_well(const Device& on, const Operation& operation, Storage storage, c
         scene.silent = false;
         operation.run(scene);
     };
-    const bool failed = fails(plan, run, {scene.silent, operation.automatic});
+    const bool failed =
+        fails(plan, run, {scene.silent, operation.automatic || operation.falls_back});
     scene.require_contents();
     if (failed) {
         run();

@@ -219,8 +219,9 @@ auto build_later_and(Scene& scene, const auto& read) {
             throw;
         }
     }();
-    scene.lists_hold = Contents::full;
+    // Under drop, the build itself may fail even now; its lists are empty then.
     require_all_stored(pending.get(), scene.oracle);
+    scene.lists_hold = Contents::full;
     return found;
 }
 
@@ -496,10 +497,13 @@ constexpr Operation table[] = {
     {"build by a kernel on another queue", empty, build_by_another_queue, repeated},
     {"build slices", empty, build_slices, repeated, Room::for_a_part, Overflow::grow, 4},
     {"clear", full, clear},
-    {"sort by a member", full, sort_by_a_member},
-    {"sort by an expression", full, sort_by_an_expression, repeated},
+    {"sort by a member", full, sort_by_a_member, first, Room::enough, Overflow::grow, 1, false,
+     true},
+    {"sort by an expression", full, sort_by_an_expression, repeated, Room::enough, Overflow::grow,
+     1, false, true},
     {"sort without blocking", full, sort_without_blocking},
-    {"sort a long list", full, sort_a_long_list, repeated},
+    {"sort a long list", full, sort_a_long_list, repeated, Room::enough, Overflow::grow, 1, false,
+     true},
     {"lengths", full, lengths},
     {"pack", full, pack, repeated},
     {"pack a member", full, pack_a_member, repeated},

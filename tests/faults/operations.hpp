@@ -33,6 +33,8 @@ struct Operation {
     std::uint64_t step = 1;  ///< more where it takes long: each so many-th call fails
     /// In Storage::automatic, whose next build tries the storage.
     bool automatic = false;
+    /// Where there is no memory it goes another way, on which a later call may fail.
+    bool falls_back = false;
 };
 std::span<const Operation> operations();
 

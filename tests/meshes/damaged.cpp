@@ -65,7 +65,7 @@ TEST_CASE("declared counts of 4 billion take no memory") {
         "property float x\nproperty float y\nproperty float z\n";
     check_refused("a.ply", binary + body, "declares 4000000000");
     check_refused("a.off", "OFF\n4000000000 4000000000 0\n0 0 0\n", "declares 4000000000");
-    check_refused("a.off", "OFF\n3 1 0\n" + corners + "4000000000 0 1 2\n", "4000000000 corners");
+    check_refused("a.off", "OFF\n3 1 0\n" + corners + "4000000000 0 1 2\n", "a face of 4000000000");
     std::string stl(80, ' ');
     stl += "\xFF\xFF\xFF\xFF";
     check_refused("a.stl", stl + std::string(500, '\0'), "declares 4294967295");

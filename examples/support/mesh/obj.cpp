@@ -311,10 +311,13 @@ private:
         const auto fraction = [](float value, float greatest) {
             return std::min(static_cast<double>(value) / (greatest > 1 ? 255 : 1), 1.0);
         };
+        float greatest_opacity = 0;
+        for (const glm::vec4& colour : colours)
+            greatest_opacity = std::max(greatest_opacity, colour.a);
         for (glm::vec4& colour : colours) {
             for (int i = 0; i < 3; ++i)
                 colour[i] = linear_from_srgb(fraction(colour[i], greatest_colour_));
-            colour.a = to_float(fraction(colour.a, colour.a));
+            colour.a = to_float(fraction(colour.a, greatest_opacity));
         }
         return colours;
     }
