@@ -107,6 +107,8 @@ void read_blend(const std::string& text, FrameOptions& options) {
     if (function.find('\0') != std::string::npos)
         throw InputError("--blend " + support::text_of(text) +
                          ": not a text, for it has a byte of 0");
+    // Other text comes before it, and a byte order mark may only start a source.
+    if (function.starts_with("\xEF\xBB\xBF")) function.erase(0, 3);
     options.blend = Blend::user;
     options.blend_function = {std::move(function), text};
 }

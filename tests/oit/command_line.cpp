@@ -153,7 +153,7 @@ TEST_CASE("the user's function is read from a file, and its failures are told") 
     const std::string head =
         "static void blend(const OitFragment* fragment, float distance, float3* colour,\n"
         "                  float3* transmittance) {\n";
-    (void)program.folder().write("fine.cl", head + "*transmittance *= 0.5f; }");
+    (void)program.folder().write("fine.cl", "\xEF\xBB\xBF" + head + "*transmittance *= 0.5f; }");
     (void)program.folder().write("nan.cl", head + "*colour = NAN; }");
     (void)program.folder().write("bad.cl", head + "*colour = nothing; }");
     const std::string run = "knot.obj --size 64x48 --frames 1 --blend ";

@@ -153,9 +153,7 @@ TEST_CASE("figures are read from JSON as they were") {
     CHECK(figures["settings"].size() == 4);
     CHECK(figures["settings"][0]["layers"] == 8);
     CHECK(figures["settings"][0]["psnr_db"] == 13.5);
-    // Which ones depends on times.
-    CHECK(std::ranges::any_of(figures["settings"],
-                              [](const json& setting) { return setting["pareto"] == true; }));
+    CHECK(figures["settings"][0]["pareto"] == true);
     CHECK(figures["settings"][1]["psnr_db"].is_null());
     CHECK(figures["settings"][3]["failure"] == "too large, \"by far\"");
     CHECK(figures["fewer_layers"][0]["speed_up"] == 1.5);
@@ -234,7 +232,9 @@ TEST_CASE("a run writes table, JSON, CSV and page") {
         CHECK(setting["psnr_db"] > 20);
         CHECK(setting["ssim"] > 0.5);
     }
-    CHECK(figures["settings"][0]["pareto"] == true);
+    // Which ones depends on times.
+    CHECK(std::ranges::any_of(figures["settings"],
+                              [](const json& setting) { return setting["pareto"] == true; }));
     CHECK(count_of(read_file(program.folder() / "a.csv"), "\n") == 3);
     const std::string page = read_file(program.folder() / "a.html");
     require_self_contained(page);
