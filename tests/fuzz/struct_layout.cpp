@@ -185,8 +185,6 @@ std::string refusal_of(const Device& device, const Definitions& definitions) {
     try {
         Kernel(device.state(), Source{.text = "kernel void nothing_(uint parameter) {}"},
                "nothing_", definitions);
-    } catch (const OpenClError&) {
-        CELLIST_FUZZ_REQUIRE(false && "the layout checks find it first");
     } catch (const Error& error) {
         return error.what();
     }
@@ -202,7 +200,7 @@ void refuse_wrong_layout(const Device& device, Input& input, Definitions definit
     else
         record.members[choice - 1].offset += by;
     const std::string refusal = refusal_of(device, definitions);
-    CELLIST_FUZZ_REQUIRE(refusal.find("layout") != std::string::npos);
+    CELLIST_FUZZ_REQUIRE(refusal.find("the layout of a struct differs") != std::string::npos);
     CELLIST_FUZZ_REQUIRE(refusal.find(record.name) != std::string::npos);
 
     Definitions twice = definitions;
@@ -285,7 +283,9 @@ void compare_records(const Device& device, Input& input, const Struct& record,
     const bool descending = input.below(2) == 1;
     const auto storage = static_cast<Storage>(input.below(3));
 
-    detail::ListsCore lists(device.state(), definitions, {cells}, {.storage = storage});
+    const auto core = std::make_shared<detail::ListsCore>(device.state(), definitions, Shape{cells},
+                                                          ListsOptions{.storage = storage});
+    detail::ListsCore& lists = *core;
     Definitions with_modes = definitions;
     with_modes.modes = lists.mode();
     Kernel insert(device.state(),
