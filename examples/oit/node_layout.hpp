@@ -58,12 +58,11 @@ struct NodeLayout {
     NodeFormat format = NodeFormat::float32;
     DepthScale depth_scale = DepthScale::linear;
     std::uint32_t words = 0;
-    int half_exponent = 0;    ///< halves hold colours times 2 to this power, 0 or less
-    NodeField alpha = {};     ///< a float, a half, or 8 bits
-    NodeField coverage = {};  ///< a bit for each sample
-    NodeField blend = {};     ///< Blend; 6 where a surface is left
-    NodeField depth_range =
-        {};  ///< two halves: how much 1 / depth grows a pixel, along x and y
+    int half_exponent = 0;       ///< halves hold colours times 2 to this power, 0 or less
+    NodeField alpha = {};        ///< a float, a half, or 8 bits
+    NodeField coverage = {};     ///< a bit for each sample
+    NodeField blend = {};        ///< Blend; 6 where a surface is left
+    NodeField depth_range = {};  ///< two halves: how much 1 / depth grows a pixel, along x and y
 
     /// The depth in a key. `needs` gives the range of quantised depths.
     [[nodiscard]] double depth_of(std::uint32_t key, const Needs& needs) const;

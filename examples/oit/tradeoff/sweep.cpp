@@ -53,9 +53,7 @@ const Measurement* all_layers(const Sweep& sweep) {
 
 }  // namespace
 
-std::string Sweep::scene_name() const {
-    return title_of(options);
-}
+std::string Sweep::scene_name() const { return title_of(options); }
 
 std::vector<Setting> settings_of(const Frame& frame, std::uint64_t most_layers,
                                  std::span<const std::string_view> methods) {
