@@ -102,9 +102,10 @@ TEST_CASE("records of up to 64 KiB are sorted, packed and downloaded") {
         sort_in_every_way<Odd>(900, CL_DEVICE_TYPE_GPU, storage);
     }
     SECTION("of 65,540 bytes, as on a CPU") {
-        // Kernels insert by value, and a GPU has no stack of that size for each of its work-items.
+        // On an H100 a launch fails with CL_OUT_OF_HOST_MEMORY; which one is not known. Kernels
+        // insert by value.
         if (device().info().type == CL_DEVICE_TYPE_GPU) {
-            WARN("SKIP: records of 65,540 bytes are too large for a work-item of a GPU");
+            WARN("SKIP: a launch with records of 65,540 bytes fails on NVIDIA GPUs");
             return;
         }
         sort_in_every_way<Large>(60, CL_DEVICE_TYPE_CPU, storage);

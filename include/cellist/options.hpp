@@ -55,7 +55,8 @@ struct ListsOptions {
     std::optional<std::uint32_t> slots = {};
     /// The scalar member that Overflow::keep_nearest ranks by, e.g. "depth"; for no other policy.
     std::string nearest_by = {};
-    /// Device memory that heads, nodes and counters may take together, and what sorts and builds keep.
+    /// Device memory that heads, nodes and counters may take together, and what sorts and builds keep
+    /// of any length. The fixed state of a sort, some 60 bytes, comes on top.
     std::uint64_t budget_bytes = std::numeric_limits<std::uint64_t>::max();
     Allocation allocation = Allocation::sharded;
     /// For Storage::automatic: how often kernels walk all lists after each build.
