@@ -1,4 +1,4 @@
-// What a container does in Storage::automatic. The choice itself is made in chooser.cpp.
+// What a container does in Storage::automatic. The choice itself is made in storage_tuner.cpp.
 
 #include <array>
 #include <chrono>
@@ -9,7 +9,7 @@
 
 #include "build.hpp"
 #include "cellist_kernels.hpp"
-#include "chooser.hpp"
+#include "storage_tuner.hpp"
 #include "storages.hpp"
 
 namespace cellist::detail {
@@ -38,7 +38,7 @@ void ListsCore::use(Storage storage) {
     std::exception_ptr error;
     for (std::optional<Storage> next = storage; next;) {
         try {
-            storage_ = make_storage(device_, definitions_, shape_, chooser_->options(*next));
+            storage_ = make_storage(device_, definitions_, shape_, tuner_->options(*next));
             in_use_ = *next;
             has_chosen_ = true;
             definitions_.modes = storage_->mode();
@@ -49,7 +49,7 @@ void ListsCore::use(Storage storage) {
             // Linked lists have the widest limits: what stops them is what counts.
             if (!error || in_all || *next == Storage::linked) error = std::current_exception();
             if (in_all) break;
-            next = chooser_->exclude(*next, std::string("not possible: ") + reason.what());
+            next = tuner_->exclude(*next, std::string("not possible: ") + reason.what());
         }
     }
     if (storage_) empty_after_failure(false);
@@ -57,23 +57,23 @@ void ListsCore::use(Storage storage) {
 }
 
 void ListsCore::start() {
-    if (chooser_ && !in_slices_) use(chooser_->storage());
+    if (tuner_ && !in_slices_) use(tuner_->storage());
     storage_->start();
 }
 
 /// Excludes the storage in use from the choice, and starts the build anew in another. False if there is
 /// none.
 bool ListsCore::replace(const BuildReport& report, const char* why, bool for_ever) {
-    const std::optional<Storage> other = chooser_->exclude(in_use_, why, for_ever);
+    const std::optional<Storage> other = tuner_->exclude(in_use_, why, for_ever);
     if (!other) return false;
-    chooser_->expect(report.stored + report.dropped);
+    tuner_->expect(report.stored + report.dropped);
     use(*other);
     storage_->start();
     return true;
 }
 
 bool ListsCore::review(BuildReport& report) {
-    if (!chooser_ || in_slices_) return storage_->review(report);
+    if (!tuner_ || in_slices_) return storage_->review(report);
     try {
         const bool complete = storage_->review(report);
         if (!complete || in_use_ != Storage::fixed || report.dropped == 0) return complete;
@@ -97,9 +97,9 @@ bool ListsCore::review(BuildReport& report) {
     return false;
 }
 
-bool ListsCore::review_may_change() const { return chooser_ || storage_->may_grow(); }
+bool ListsCore::review_may_change() const { return tuner_ || storage_->may_grow(); }
 
-BuildReport ListsCore::measure(const std::function<void()>& insert, Trial& trial) {
+BuildReport ListsCore::measure(const std::function<void()>& insert, Measurement& trial) {
     settle();
     BuildReport report;
     try {
@@ -114,7 +114,7 @@ BuildReport ListsCore::measure(const std::function<void()>& insert, Trial& trial
     return report;
 }
 
-void ListsCore::measure_walk(Trial& trial) const {
+void ListsCore::measure_walk(Measurement& trial) const {
     std::array<cl_uint, 2> found{};
     Memory findings(device_.state(), found.size(), sizeof(cl_uint), "findings");
     findings.write(found.data(), sizeof found);
@@ -133,18 +133,18 @@ void ListsCore::measure_walk(Trial& trial) const {
 /// A build, and what Storage::automatic learns from it.
 BuildReport ListsCore::build_once(const std::function<void()>& insert) {
     settle();
-    if (!chooser_ || !chooser_->on_trial()) {
+    if (!tuner_ || !tuner_->on_trial()) {
         const BuildReport report = finish(*start_build({this}, insert)).front();
-        if (chooser_) chooser_->built(report.stored);
+        if (tuner_) tuner_->built(report.stored);
         return report;
     }
-    Trial trial;
-    const Storage tried = chooser_->storage();
+    Measurement trial;
+    const Storage tried = tuner_->storage();
     const BuildReport report = measure(insert, trial);
     if (in_use_ == tried)
-        chooser_->measured(trial);
+        tuner_->measured(trial);
     else
-        chooser_->built(report.stored);
+        tuner_->built(report.stored);
     return report;
 }
 
@@ -161,16 +161,16 @@ BuildReport ListsCore::build(const std::function<void()>& insert) {
             if (!first) first = std::current_exception();
             // Drivers may find out in the midst of a build that they have no memory for it. Where all
             // storages fail, the device is lost.
-            if (!chooser_ || !out_of_memory(error) || tried == choices.size() ||
-                !chooser_->exclude(in_use_,
-                                   std::string("left: ") + error.call() + " found no memory"))
+            if (!tuner_ || !out_of_memory(error) || tried == choices.size() ||
+                !tuner_->exclude(in_use_,
+                                 std::string("left: ") + error.call() + " found no memory"))
                 std::rethrow_exception(first);
         }
     }
 }
 
 std::string ListsCore::storage_reason() const {
-    return chooser_ ? chooser_->reason() : std::string(name_of(in_use_)) + ": named in the options";
+    return tuner_ ? tuner_->reason() : std::string(name_of(in_use_)) + ": named in the options";
 }
 
 }  // namespace cellist::detail

@@ -110,7 +110,7 @@ void Build::give(const std::weak_ptr<const ListsCore>& lists, const std::string&
         made->first_pass = Running::innermost->build.passes_;
         made->lists = lists;
         made->description = given->description();
-        made->arrival = given->read_late(made->before);
+        made->fence = given->read_late(made->before);
         known = all.insert(all.end(), std::move(made));
     }
     const std::string name = parameter.substr(0, parameter.rfind("_nodes"));
@@ -129,7 +129,7 @@ void Build::take_counts(const ListsCore& lists) {
 void Build::count_refused(Bystander& bystander) {
     if (std::exchange(bystander.counted, true)) return;
     if (const auto lists = bystander.lists.lock())
-        bystander.arrival = lists->read_late(bystander.after);
+        bystander.fence = lists->read_late(bystander.after);
     else
         bystander.lists.reset();
 }
@@ -137,7 +137,7 @@ void Build::count_refused(Bystander& bystander) {
 /// Throws Error if lists that are not part of the build have refused inserts of its kernels. Blocks.
 void Build::check_bystanders() {
     for (const auto& bystander : std::exchange(bystanders_, {})) {
-        bystander->arrival.wait();
+        bystander->fence.wait();
         const auto [low, high] = bystander->after;
         const std::uint64_t before = wide(bystander->before[0], bystander->before[1]);
         const std::uint64_t after = wide(low, high);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <cellist/detail/arrival.hpp>
+#include <cellist/detail/readback.hpp>
 #include <cellist/report.hpp>
 
 #include "storage.hpp"
@@ -56,7 +56,7 @@ private:
         std::array<cl_uint, 2> before{};  ///< inserts that were refused, low and high word
         std::array<cl_uint, 2> after{};
         bool counted = false;  ///< `after` is on its way
-        Arrival arrival;
+        ReadbackFence fence;
     };
     class Running;
 

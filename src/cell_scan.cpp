@@ -57,7 +57,7 @@ void CellScan::sum(const cl::Buffer& heads, cl_uint limit) {
                       static_cast<cl_uint>(blocks_), totals_.cl());
 }
 
-Reading CellScan::read_later(Totals& totals) const {
+PendingRead CellScan::read_later(Totals& totals) const {
     return totals_.read_later(&totals, sizeof totals);
 }
 

@@ -154,7 +154,7 @@ Device::Device(const cl::Device& device)
     detail::opencl([&] {
         state_->context = cl::Context(device);
         state_->queue = cl::CommandQueue(state_->context, device);
-        state_->staging = std::make_shared<detail::Staging>(state_->context, state_->queue);
+        state_->staging = std::make_shared<detail::PinnedStaging>(state_->context, state_->queue);
         state_->device = cl::Device(device);
         state_->info = describe(device);
         state_->max_constant_bytes = device.getInfo<CL_DEVICE_MAX_CONSTANT_BUFFER_SIZE>();
@@ -174,7 +174,7 @@ Device::Device(cl::Context context, cl::CommandQueue queue)
         state_->max_constant_bytes = state_->device.getInfo<CL_DEVICE_MAX_CONSTANT_BUFFER_SIZE>();
         state_->context = std::move(context);
         state_->queue = std::move(queue);
-        state_->staging = std::make_shared<detail::Staging>(state_->context, state_->queue);
+        state_->staging = std::make_shared<detail::PinnedStaging>(state_->context, state_->queue);
     });
 }
 

@@ -10,9 +10,9 @@
 #include <cellist/device.hpp>
 #include <cellist/error.hpp>
 
+#include "pinned_staging.hpp"
 #include "profile.hpp"
 #include "recent.hpp"
-#include "staging.hpp"
 
 namespace cellist::detail {
 
@@ -24,7 +24,7 @@ struct DeviceState {
     DeviceInfo info;
     bool out_of_order = false;             ///< the queue
     std::uint64_t max_constant_bytes = 0;  ///< of a buffer in constant memory
-    std::shared_ptr<Staging> staging;
+    std::shared_ptr<PinnedStaging> staging;
 
     /// The queue, for one command that starts after all that were enqueued before.
     const cl::CommandQueue& ordered_queue() const;

@@ -6,9 +6,9 @@
 #include "build.hpp"
 #include "cell_scan.hpp"
 #include "cellist_kernels.hpp"
-#include "chooser.hpp"
 #include "expression.hpp"
 #include "sort.hpp"
+#include "storage_tuner.hpp"
 #include "storages.hpp"
 
 namespace cellist::detail {
@@ -16,16 +16,16 @@ namespace cellist::detail {
 namespace {
 
 /// Puts another storage in the place of a container's own for as long as it lives.
-class Substitute {
+class ScopedStorage {
 public:
-    Substitute(std::unique_ptr<ListStorage>& own, std::unique_ptr<ListStorage> other)
+    ScopedStorage(std::unique_ptr<ListStorage>& own, std::unique_ptr<ListStorage> other)
         : place_(own), kept_(std::exchange(own, std::move(other))) {}
-    ~Substitute() {
+    ~ScopedStorage() {
         place_->settle();
         std::swap(place_, kept_);
     }
-    Substitute(const Substitute&) = delete;
-    Substitute& operator=(const Substitute&) = delete;
+    ScopedStorage(const ScopedStorage&) = delete;
+    ScopedStorage& operator=(const ScopedStorage&) = delete;
 
 private:
     std::unique_ptr<ListStorage>& place_;
@@ -42,10 +42,10 @@ ListsCore::ListsCore(std::shared_ptr<DeviceState> device, Definitions definition
       options_(options),
       in_use_(options.storage) {
     if (options.storage == Storage::automatic) {
-        chooser_ = std::make_unique<Chooser>(
-            Chooser::Container{shape.cells(), definitions_.records.back().size, options},
+        tuner_ = std::make_unique<StorageTuner>(
+            StorageTuner::Container{shape.cells(), definitions_.records.back().size, options},
             device_->profile());
-        use(chooser_->storage());
+        use(tuner_->storage());
     } else {
         storage_ = make_storage(device_, definitions_, shape, options);
         definitions_.modes = storage_->mode();
@@ -131,7 +131,7 @@ void ListsCore::refuse_build() const {
     if (reading_slice_) throw Error("a container is built again while a slice of it is read");
 }
 
-Reading ListsCore::read_late(std::array<cl_uint, 2>& words) const {
+PendingRead ListsCore::read_late(std::array<cl_uint, 2>& words) const {
     return storage_->read_late(words);
 }
 
@@ -219,7 +219,7 @@ Memory ListsCore::device_lengths(std::uint64_t words) const {
     return lengths;
 }
 
-Reading ListsCore::read_lengths(std::vector<cl_uint>& lengths) const {
+PendingRead ListsCore::read_lengths(std::vector<cl_uint>& lengths) const {
     lengths.resize(shape_.cells());
     return device_lengths(shape_.cells())
         .read_later(lengths.data(), lengths.size() * sizeof(cl_uint));
@@ -254,7 +254,7 @@ void ListsCore::gather(std::uint64_t begin, std::uint64_t end, const Memory& off
         .enqueue(Range::padded(end - begin), arguments);
 }
 
-void ListsCore::download(Arrival& done, std::vector<cl_uint>& offsets,
+void ListsCore::download(ReadbackFence& done, std::vector<cl_uint>& offsets,
                          const std::function<void*(std::uint64_t)>& allocate) const {
     settle_for_commands();
     // Up to 256 MiB of lists at a time, at least one list, so that the copy fits beside the pool.
@@ -303,7 +303,7 @@ std::vector<cl_uint> ListsCore::count(const std::function<void()>& insert, Build
         device_, definitions_, shape_,
         ListsOptions{.overflow = Overflow::drop, .capacity_nodes = 0});
     CountedStorage& counter = *counting;
-    const Substitute substitute(storage_, std::move(counting));
+    const ScopedStorage substitute(storage_, std::move(counting));
     counter.start();
     counter.begin_pass();
     insert();
@@ -338,8 +338,7 @@ BuildReport ListsCore::build_slices(const std::function<void()>& insert,
     };
     try {
         // An automatic storage has slots for the records of all cells, not for the budget.
-        if (chooser_)
-            use(chooser_->storage() == Storage::fixed ? Storage::linked : chooser_->storage());
+        if (tuner_) use(tuner_->storage() == Storage::fixed ? Storage::linked : tuner_->storage());
         in_slices_ = true;
         const std::vector<cl_uint> counts = count(insert, all);
         const BuildReport counted =

@@ -38,9 +38,9 @@ void Memory::write(const void* source, std::size_t bytes) {
 }
 
 void Memory::read(void* target, std::size_t bytes) const {
-    Arrival arrival;
-    arrival = read_later(target, bytes);
-    arrival.wait();
+    ReadbackFence fence;
+    fence = read_later(target, bytes);
+    fence.wait();
 }
 
 cl::Event Memory::write_later(const void* source, std::size_t bytes) {
@@ -53,10 +53,10 @@ cl::Event Memory::write_later(const void* source, std::size_t bytes) {
     });
 }
 
-Reading Memory::read_later(void* target, std::size_t bytes, std::uint64_t from_byte) const {
+PendingRead Memory::read_later(void* target, std::size_t bytes, std::uint64_t from_byte) const {
     if (bytes == 0) return {.event = state_->marker()};
-    Reading reading{.target = target, .bytes = bytes};
-    if (bytes <= Staging::block_bytes) reading.staged = state_->staging->block();
+    PendingRead reading{.target = target, .bytes = bytes};
+    if (bytes <= PinnedStaging::block_bytes) reading.staged = state_->staging->block();
     void* const to = reading.staged ? reading.staged.get() : target;
     opencl([&] {
         state_->ordered_queue().enqueueReadBuffer(buffer_, CL_FALSE, from_byte, bytes, to, nullptr,

@@ -195,12 +195,12 @@ void ListStorage::allocate_pool(std::uint64_t capacity_nodes) {
     capacity_nodes_ = capacity_nodes;
 }
 
-Reading ListStorage::read_counters(Shards& shards) const {
+PendingRead ListStorage::read_counters(Shards& shards) const {
     shards.resize(shards_.size_bytes() / sizeof(cellist_shard));
     return shards_.read_later(shards.data(), shards.size() * sizeof(cellist_shard));
 }
 
-Reading ListStorage::read_late(std::array<cl_uint, 2>& words) const {
+PendingRead ListStorage::read_late(std::array<cl_uint, 2>& words) const {
     static_assert(offsetof(cellist_shard, late_high) ==
                   offsetof(cellist_shard, late_low) + sizeof(cl_uint));
     // Behind the last shard, see cellist_refuse.
@@ -276,7 +276,8 @@ void ListStorage::update(BuildReport& report, const Counters& counters, std::uin
     report.capacity_nodes = capacity_nodes_;
 }
 
-Reading ListStorage::find(Findings& findings, Kernel& kernel, const Arguments& arguments) const {
+PendingRead ListStorage::find(Findings& findings, Kernel& kernel,
+                              const Arguments& arguments) const {
     constexpr cl_uint zero = 0;
     findings.memory.fill(&zero, sizeof zero, sizeof findings.found);
     Arguments all = arguments;

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include <cellist/detail/arrival.hpp>
 #include <cellist/detail/memory.hpp>
+#include <cellist/detail/readback.hpp>
 #include <cellist/detail/record_type.hpp>
 #include <cellist/kernel.hpp>
 #include <cellist/options.hpp>
@@ -80,7 +80,7 @@ public:
 
     /// Enqueues the reading of the inserts since the last clear() that were refused for there was no
     /// build: low and high word.
-    [[nodiscard]] Reading read_late(std::array<cl_uint, 2>& words) const;
+    [[nodiscard]] PendingRead read_late(std::array<cl_uint, 2>& words) const;
 
     /// Adds what CELLIST_LISTS declares.
     virtual void add_to(Arguments& arguments) const;
@@ -164,7 +164,7 @@ protected:
     /// pass: the kernel does not repeat itself.
     void grow_pool(std::uint64_t capacity_nodes, const BuildReport& report);
     /// Enqueues the reading of the counters: they are there when it has arrived.
-    [[nodiscard]] Reading read_counters(Shards& shards) const;
+    [[nodiscard]] PendingRead read_counters(Shards& shards) const;
     /// Of counters that are followed by so many hands. What is in these counts as free.
     [[nodiscard]] static Counters sum(const Shards& shards, cl_uint hands);
     /// The hands of threads with a pool of this capacity: see threads.clh.
@@ -203,8 +203,8 @@ protected:
     }
     /// Enqueues a validating kernel over all cells: (container, arguments..., findings). What it found
     /// is there when the reading has arrived.
-    [[nodiscard]] Reading find(Findings& findings, Kernel& kernel,
-                               const Arguments& arguments) const;
+    [[nodiscard]] PendingRead find(Findings& findings, Kernel& kernel,
+                                   const Arguments& arguments) const;
 
     MemoryOwner device_;
     Definitions definitions_;
@@ -228,8 +228,8 @@ protected:
     Memory shards_;
     std::optional<Spare> spare_;
     std::optional<Kernel> clear_;
-    Shards counters_;  ///< of the last pass
-    Arrival reading_;  ///< what a review waits for: the last reading of the pass
+    Shards counters_;        ///< of the last pass
+    ReadbackFence reading_;  ///< what a review waits for: the last reading of the pass
 };
 
 /// The lowest bad cell, if there is one.

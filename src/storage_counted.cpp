@@ -216,7 +216,7 @@ std::vector<cl_uint> CountedStorage::counts(BuildReport& report) {
 }
 
 /// Enqueues the comparison of the counts with the lists, and of the offsets with the expected offsets.
-Reading CountedStorage::find(Findings& findings, const Memory& offsets) {
+PendingRead CountedStorage::find(Findings& findings, const Memory& offsets) {
     if (!validate_)
         validate_.emplace(
             kernel("cellist_validate_contiguous", kernels::validate_contiguous_cl, mode_));
@@ -232,7 +232,7 @@ std::function<Validation()> CountedStorage::validate() {
         Findings findings;
         CellScan::Totals inserted;
         Shards shards;
-        Arrival done;
+        ReadbackFence done;
     };
     const auto check = std::make_shared<Check>();
     check->findings.memory = memory_for_findings();

@@ -91,7 +91,7 @@ std::function<Validation()> FixedStorage::validate() {
     struct Check {
         CellScan::Totals in_slots, all;
         Shards shards;
-        Arrival done;
+        ReadbackFence done;
     };
     const auto check = std::make_shared<Check>();
     scan_.sum(heads_.cl(), slots_);

@@ -107,7 +107,7 @@ std::function<Validation()> LinkedStorage::validate() {
         Memory reached;
         Findings findings;
         Shards shards;
-        Arrival done;
+        ReadbackFence done;
     };
     const auto check = std::make_shared<Check>();
     constexpr cl_uint zero = 0;

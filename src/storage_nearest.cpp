@@ -142,7 +142,7 @@ std::function<Validation()> NearestStorage::validate() {
     struct Check {
         CellScan::Totals all;
         Shards shards;
-        Arrival done;
+        ReadbackFence done;
     };
     const auto check = std::make_shared<Check>();
     scan_.sum(heads_.cl(), CELLIST_NONE);

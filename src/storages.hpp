@@ -62,7 +62,7 @@ private:
     bool review_partitions(BuildReport& report);
     [[nodiscard]] std::uint64_t replaceable_bytes() const override;
     void make_room(const BuildReport& report);
-    Reading find(Findings& findings, const Memory& offsets);
+    PendingRead find(Findings& findings, const Memory& offsets);
     [[nodiscard]] cl_uint counts_at() const { return static_cast<cl_uint>(shape_.cells() + 1); }
 
     CellScan scan_;

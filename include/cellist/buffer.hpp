@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include <cellist/detail/arrival.hpp>
 #include <cellist/detail/memory.hpp>
+#include <cellist/detail/readback.hpp>
 #include <cellist/device.hpp>
 #include <cellist/error.hpp>
 #include <cellist/pending.hpp>
@@ -47,7 +47,7 @@ public:
     [[nodiscard]] Pending<std::vector<T>> download_async() const {
         struct State {
             std::vector<T> elements;
-            detail::Arrival done;
+            detail::ReadbackFence done;
         };
         const auto state = std::make_shared<State>();
         state->elements = detail::host_memory<T>(size());

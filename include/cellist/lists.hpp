@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include <cellist/detail/arrival.hpp>
 #include <cellist/detail/lists_core.hpp>
 #include <cellist/detail/owned.hpp>
+#include <cellist/detail/readback.hpp>
 #include <cellist/device.hpp>
 #include <cellist/host_lists.hpp>
 #include <cellist/kernel.hpp>
@@ -203,7 +203,7 @@ public:
     [[nodiscard]] Pending<Lengths> lengths_async() const {
         struct State {
             std::vector<cl_uint> lengths;
-            detail::Arrival done;
+            detail::ReadbackFence done;
         };
         const auto state = std::make_shared<State>();
         state->done = core_->read_lengths(state->lengths);
@@ -222,7 +222,7 @@ public:
         struct State {
             std::vector<cl_uint> offsets;
             std::vector<T> records;
-            detail::Arrival done;
+            detail::ReadbackFence done;
         };
         const auto state = std::make_shared<State>();
         core_->download(state->done, state->offsets, [&](std::uint64_t count) -> void* {

@@ -9,8 +9,8 @@
 
 #include <cellist/cellist.hpp>
 
-#include "chooser.hpp"
 #include "profile.hpp"
+#include "storage_tuner.hpp"
 
 namespace cellist::command {
 
@@ -61,7 +61,7 @@ detail::Cost measure(const Device& device, Storage storage, detail::Pattern patt
     const auto is_random = static_cast<cl_uint>(pattern == detail::Pattern::random);
     detail::Cost least;
     for (int i = 0; i < builds; ++i) {
-        detail::Trial trial;
+        detail::Measurement trial;
         const BuildReport report =
             lists.core().measure([&] { insert.run(records, lists, is_random); }, trial);
         if (report.stored != records)

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "chooser.hpp"
 #include "layer.hpp"
+#include "storage_tuner.hpp"
 #include "support/storages.hpp"
 
 namespace cellist::test {

@@ -311,7 +311,7 @@ void compare_records(const Device& device, Input& input, const Struct& record,
     CELLIST_FUZZ_REQUIRE(lists.validate()().ok());
     Bytes found;
     std::vector<cl_uint> offsets;
-    detail::Arrival done;
+    detail::ReadbackFence done;
     lists.download(done, offsets, [&](std::uint64_t total) -> void* {
         found.resize(total * type.size);
         return found.data();

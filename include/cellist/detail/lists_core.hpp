@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include <cellist/detail/arrival.hpp>
 #include <cellist/detail/memory.hpp>
+#include <cellist/detail/readback.hpp>
 #include <cellist/detail/record_type.hpp>
 #include <cellist/kernel.hpp>
 #include <cellist/options.hpp>
@@ -20,10 +20,10 @@ namespace cellist::detail {
 
 class Build;
 class CellScan;
-class Chooser;
+class StorageTuner;
 class ListSorter;
 class ListStorage;
-struct Trial;
+struct Measurement;
 
 /// What lists are sorted by.
 struct SortKey {
@@ -58,7 +58,7 @@ public:
     /// A build of this container alone, from which Storage::automatic learns. Blocks.
     BuildReport build(const std::function<void()>& insert);
     /// The same, with the time that it takes and a read of every record after it. Blocks.
-    BuildReport measure(const std::function<void()>& insert, Trial& trial);
+    BuildReport measure(const std::function<void()>& insert, Measurement& trial);
 
     /// Builds a range of cells at a time, and calls `read` for each.
     BuildReport build_slices(const std::function<void()>& insert,
@@ -73,12 +73,12 @@ public:
     [[nodiscard]] std::function<Validation()> validate() const;
 
     /// Enqueues the reading of every list's length; `lengths` has them when it has arrived.
-    [[nodiscard]] Reading read_lengths(std::vector<cl_uint>& lengths) const;
+    [[nodiscard]] PendingRead read_lengths(std::vector<cl_uint>& lengths) const;
 
     /// Enqueues the reading of all lists: cells + 1 offsets, and the records. `allocate` takes the most
     /// records that there can be, and returns where they go. Blocks where there are too many records to
     /// copy at once, and for a pending build that may still change the lists.
-    void download(Arrival& done, std::vector<cl_uint>& offsets,
+    void download(ReadbackFence& done, std::vector<cl_uint>& offsets,
                   const std::function<void*(std::uint64_t)>& allocate) const;
 
     /// Enqueues the writing of cells + 1 offsets, calls `allocate` with the most records there can be,
@@ -99,7 +99,7 @@ public:
     [[nodiscard]] Storage storage_in_use() const { return in_use_; }
     [[nodiscard]] std::string storage_reason() const;
     /// Of Storage::automatic; null otherwise. For tests, which tell it of times of their own.
-    [[nodiscard]] Chooser* chooser() const { return chooser_.get(); }
+    [[nodiscard]] StorageTuner* tuner() const { return tuner_.get(); }
     /// The mode in which the lists are read, as in view.h.
     [[nodiscard]] unsigned mode() const;
 
@@ -121,7 +121,7 @@ public:
     /// Whether kernels may insert now.
     [[nodiscard]] bool is_open() const;
     /// Enqueues the reading of the number of inserts that were refused outside a build: low and high word.
-    [[nodiscard]] Reading read_late(std::array<cl_uint, 2>& words) const;
+    [[nodiscard]] PendingRead read_late(std::array<cl_uint, 2>& words) const;
     /// E.g. "lists of Hit of shape 17 x 3".
     [[nodiscard]] std::string description() const;
 
@@ -143,7 +143,7 @@ private:
     /// that inserts has replaced it.
     static void refuse_orphan(const std::shared_ptr<ListsCore>& self);
     BuildReport build_once(const std::function<void()>& insert);
-    void measure_walk(Trial& trial) const;
+    void measure_walk(Measurement& trial) const;
     void use(Storage storage);
     bool replace(const BuildReport& report, const char* why, bool for_ever);
     Kernel& kernel(const std::string& name, std::string_view source,
@@ -169,7 +169,7 @@ private:
     Definitions definitions_;
     Shape shape_;
     ListsOptions options_;
-    std::unique_ptr<Chooser> chooser_;  ///< of Storage::automatic
+    std::unique_ptr<StorageTuner> tuner_;  ///< of Storage::automatic
     Storage in_use_;
     bool has_chosen_ = false;  ///< storage_ is what use() made, with its pool
     std::unique_ptr<ListStorage> storage_;

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include <cellist/detail/arrival.hpp>
 #include <cellist/detail/owned.hpp>
+#include <cellist/detail/readback.hpp>
 #include <cellist/opencl.hpp>
 
 namespace cellist::detail {
@@ -84,8 +84,8 @@ public:
     /// The same without blocking. `source` stays until the event has completed, `target` until the
     /// reading has arrived.
     cl::Event write_later(const void* source, std::size_t bytes);
-    [[nodiscard]] Reading read_later(void* target, std::size_t bytes,
-                                     std::uint64_t from_byte = 0) const;
+    [[nodiscard]] PendingRead read_later(void* target, std::size_t bytes,
+                                         std::uint64_t from_byte = 0) const;
     /// Repeats a pattern over the first `bytes`. Blocks only where the pattern's size is no power of
     /// two up to 128.
     void fill(const void* pattern, std::size_t pattern_bytes, std::size_t bytes);

@@ -1,4 +1,4 @@
-#include "staging.hpp"
+#include "pinned_staging.hpp"
 
 #include <utility>
 
@@ -6,12 +6,12 @@
 
 namespace cellist::detail {
 
-Staging::~Staging() {
+PinnedStaging::~PinnedStaging() {
     for (const Block& block : free_)
         clEnqueueUnmapMemObject(queue_(), block.memory(), block.bytes, 0, nullptr, nullptr);
 }
 
-std::shared_ptr<std::byte> Staging::block() {
+std::shared_ptr<std::byte> PinnedStaging::block() {
     Block block = take();
     auto* const bytes = static_cast<std::byte*>(block.bytes);
     return {bytes, [self = shared_from_this(), block = std::move(block)](std::byte*) mutable {
@@ -20,7 +20,7 @@ std::shared_ptr<std::byte> Staging::block() {
             }};
 }
 
-Staging::Block Staging::take() {
+PinnedStaging::Block PinnedStaging::take() {
     const std::lock_guard lock(mutex_);
     if (!free_.empty()) {
         Block block = std::move(free_.back());

@@ -1,4 +1,4 @@
-#include "chooser.hpp"
+#include "storage_tuner.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -52,24 +52,24 @@ Cost scaled(const Cost& cost, double factor) {
 
 }  // namespace
 
-Chooser::Chooser(const Container& container, const std::optional<Profile>& profile)
+StorageTuner::StorageTuner(const Container& container, const std::optional<Profile>& profile)
     : container_(container), profile_(profile) {
     // How long the lists will be is not known: fixed is for later.
     if (profile_ && profile_seconds(Storage::counted) < profile_seconds(Storage::linked))
         current_ = static_cast<std::size_t>(Storage::counted);
 }
 
-double Chooser::profile_seconds(Storage storage) const {
+double StorageTuner::profile_seconds(Storage storage) const {
     double sum = 0;
     for (const Pattern pattern : patterns) sum += total_seconds(profile_->cost(storage, pattern));
     return sum / patterns.size();
 }
 
-std::uint64_t Chooser::fixed_nodes_most() const {
+std::uint64_t StorageTuner::fixed_nodes_most() const {
     return std::max(slots_a_record * most_stored_, slots_free);
 }
 
-ListsOptions Chooser::options(Storage storage) const {
+ListsOptions StorageTuner::options(Storage storage) const {
     ListsOptions options = container_.options;
     options.storage = storage;
     if (options.overflow != Overflow::grow || most_stored_ == 0) return options;
@@ -86,7 +86,7 @@ ListsOptions Chooser::options(Storage storage) const {
     return options;
 }
 
-void Chooser::begin_trial() {
+void StorageTuner::begin_trial() {
     on_trial_ = true;
     stored_ = most_stored_ = longest_ = 0;
     for (Candidate& candidate : candidates_) {
@@ -96,7 +96,7 @@ void Chooser::begin_trial() {
     }
 }
 
-void Chooser::measured(const Trial& trial) {
+void StorageTuner::measured(const Measurement& trial) {
     if (trial.stored == 0) return;
     stored_ = trial.stored;
     expect(trial.stored);
@@ -119,7 +119,7 @@ void Chooser::measured(const Trial& trial) {
 }
 
 /// On to a storage that was not built with in this trial, or to the end of the trial.
-void Chooser::next_candidate() {
+void StorageTuner::next_candidate() {
     for (std::size_t i = 0; i < candidates_.size(); ++i) {
         Candidate& candidate = candidates_[i];
         if (candidate.builds > 0 || !candidate.excluded.empty()) continue;
@@ -134,7 +134,7 @@ void Chooser::next_candidate() {
     if (builds_between_ < (1u << 30)) builds_between_ *= 2;
 }
 
-void Chooser::built(std::uint64_t stored) {
+void StorageTuner::built(std::uint64_t stored) {
     expect(stored);
     if (on_trial_ || ++builds_ < builds_between_) return;
     const std::uint64_t now = std::max(stored, stored_least);
@@ -142,7 +142,7 @@ void Chooser::built(std::uint64_t stored) {
     if (now > 2 * then || then > 2 * now) begin_trial();
 }
 
-const Chooser::Candidate* Chooser::best() const {
+const StorageTuner::Candidate* StorageTuner::best() const {
     const Candidate* best = nullptr;
     for (const Candidate& candidate : candidates_)
         if (candidate.is_measured() &&
@@ -152,7 +152,7 @@ const Chooser::Candidate* Chooser::best() const {
 }
 
 /// Why a storage is not tried; empty if it is.
-std::string Chooser::refusal(Storage storage) const {
+std::string StorageTuner::refusal(Storage storage) const {
     if (storage == Storage::fixed)
         if (const std::string why = refusal_of_fixed(); !why.empty()) return "not tried: " + why;
     const Candidate* known = best();
@@ -174,7 +174,7 @@ std::string Chooser::refusal(Storage storage) const {
            " in the profile of this device";
 }
 
-std::string Chooser::refusal_of_fixed() const {
+std::string StorageTuner::refusal_of_fixed() const {
     const ListsOptions& options = container_.options;
     if (options.overflow == Overflow::grow) {
         if (longest_ >= walk_most)
@@ -192,7 +192,8 @@ std::string Chooser::refusal_of_fixed() const {
     return {};
 }
 
-std::optional<Storage> Chooser::exclude(Storage storage, const std::string& why, bool for_ever) {
+std::optional<Storage> StorageTuner::exclude(Storage storage, const std::string& why,
+                                             bool for_ever) {
     Candidate& failed = candidate(storage);
     failed.excluded = why;
     failed.for_ever = failed.for_ever || for_ever;
@@ -218,7 +219,7 @@ std::optional<Storage> Chooser::exclude(Storage storage, const std::string& why,
     return other;
 }
 
-std::string Chooser::reason() const {
+std::string StorageTuner::reason() const {
     const Candidate& chosen = candidates_[current_];
     std::string text = std::string(name_of(chosen.storage)) + ": ";
     const std::uint32_t reads = container_.options.expected_reads;

@@ -10,15 +10,15 @@
 namespace cellist::detail {
 
 /// Page-locked host memory of a device, in blocks, through which small reads go: docs/adr/017.
-class Staging : public std::enable_shared_from_this<Staging> {
+class PinnedStaging : public std::enable_shared_from_this<PinnedStaging> {
 public:
     static constexpr std::size_t block_bytes = 16384;
 
-    Staging(cl::Context context, cl::CommandQueue queue)
+    PinnedStaging(cl::Context context, cl::CommandQueue queue)
         : context_(std::move(context)), queue_(std::move(queue)) {}
-    Staging(const Staging&) = delete;
-    Staging& operator=(const Staging&) = delete;
-    ~Staging();
+    PinnedStaging(const PinnedStaging&) = delete;
+    PinnedStaging& operator=(const PinnedStaging&) = delete;
+    ~PinnedStaging();
 
     /// A block that is nobody else's until the last copy of the pointer has gone, for commands of the
     /// queue. Any thread may call it. Does not block.

@@ -13,7 +13,7 @@ namespace cellist::detail {
 
 /// A read that was enqueued. When the event has completed, the bytes are in `staged`, or where that is null
 /// in `target`.
-struct Reading {
+struct PendingRead {
     cl::Event event = {};
     std::shared_ptr<std::byte> staged = {};
     void* target = nullptr;
@@ -22,15 +22,15 @@ struct Reading {
 
 /// Data on its way to host memory. Blocks at the end of its life until the memory is free:
 /// declare it behind the memory.
-class Arrival {
+class ReadbackFence {
 public:
-    Arrival() = default;
-    Arrival(const Arrival&) = delete;
-    Arrival& operator=(const Arrival&) = delete;
-    ~Arrival() { settle(); }
+    ReadbackFence() = default;
+    ReadbackFence(const ReadbackFence&) = delete;
+    ReadbackFence& operator=(const ReadbackFence&) = delete;
+    ~ReadbackFence() { settle(); }
 
     /// Waits for this one too. Events of a queue in order: the last stands for all.
-    Arrival& operator=(Reading reading) {
+    ReadbackFence& operator=(PendingRead reading) {
         event_ = std::exchange(reading.event, {});
         if (reading.staged) staged_.push_back(std::move(reading));
         return *this;
@@ -49,7 +49,7 @@ public:
         const cl_int code = clWaitForEvents(1, &event_());
         if (code != CL_SUCCESS) throw OpenClError("clWaitForEvents", code);
         event_ = cl::Event();
-        for (const Reading& reading : staged_)
+        for (const PendingRead& reading : staged_)
             std::memcpy(reading.target, reading.staged.get(), reading.bytes);
         staged_.clear();
     }
@@ -64,7 +64,7 @@ public:
 
 private:
     cl::Event event_;
-    std::vector<Reading> staged_;
+    std::vector<PendingRead> staged_;
 };
 
 }  // namespace cellist::detail

@@ -14,7 +14,7 @@
 namespace cellist::detail {
 
 /// A build that was measured.
-struct Trial {
+struct Measurement {
     Cost cost;
     std::uint64_t stored = 0;
     std::uint64_t longest = 0;  ///< records of the longest list
@@ -32,7 +32,7 @@ inline constexpr std::uint32_t walk_most = 1u << 20;
 /// times that of a read decide. When the number of records has doubled or halved, another
 /// trial follows; ever more builds must have passed since the last, so that numbers that go to and fro
 /// do not keep the container on trial.
-class Chooser {
+class StorageTuner {
 public:
     /// What does not change from build to build.
     struct Container {
@@ -40,7 +40,7 @@ public:
         std::uint64_t record_bytes;
         ListsOptions options;
     };
-    Chooser(const Container& container, const std::optional<Profile>& profile);
+    StorageTuner(const Container& container, const std::optional<Profile>& profile);
 
     /// For the next build.
     [[nodiscard]] Storage storage() const { return candidates_[current_].storage; }
@@ -49,7 +49,7 @@ public:
     /// Whether measured() is to be told of the next build, and built() otherwise.
     [[nodiscard]] bool on_trial() const { return on_trial_; }
     /// After a build in storage().
-    void measured(const Trial& trial);
+    void measured(const Measurement& trial);
     void built(std::uint64_t stored);
 
     /// Makes room for so many records in the options.
