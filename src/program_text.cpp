@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 #include <iterator>
+#include <optional>
+#include <utility>
 
 namespace cellist::detail {
 
@@ -42,6 +44,29 @@ std::string_view take_library_include(std::string_view& text) {
     if (!take(rest, ".clh") || (!take(rest, ">") && !take(rest, "\""))) return {};
     text = rest;
     return name;
+}
+
+/// A directive `#line NUMBER "FILE"`, whose file name is optional.
+struct LineDirective {
+    std::size_t number = 0;
+    std::string file_name;
+};
+
+std::optional<LineDirective> line_directive(std::string_view line) {
+    LineDirective directive;
+    skip_blanks(line);
+    if (!take(line, "#")) return {};
+    skip_blanks(line);
+    if (!take(line, "line")) return {};
+    skip_blanks(line);
+    const std::string_view number = run(line, 0, digits);
+    if (std::from_chars(number.data(), number.data() + number.size(), directive.number).ec !=
+        std::errc())
+        return {};
+    line.remove_prefix(number.size());
+    skip_blanks(line);
+    if (take(line, "\"")) directive.file_name = line.substr(0, line.find('"'));
+    return directive;
 }
 
 /// The source without line continuations, which may be anywhere in a directive.
@@ -100,13 +125,23 @@ bool includes_files(std::string_view source, std::string_view options) {
 }
 
 void ProgramText::add(std::string_view part, const std::string& file_name) {
-    parts_.push_back({lines_ + 1, file_name});
+    parts_.push_back({lines_ + 1, 1, file_name});
     std::string escaped;
     for (const char c : file_name) {
         if (c == '"' || c == '\\') escaped += '\\';
         escaped += static_cast<unsigned char>(c) < ' ' ? '_' : c;
     }
     append("#line 1 \"" + escaped + "\"\n");
+    std::size_t line = lines_;
+    for (std::string_view rest = part; !rest.empty();) {
+        const std::string_view text = rest.substr(0, rest.find('\n'));
+        rest.remove_prefix(std::min(text.size() + 1, rest.size()));
+        ++line;
+        if (auto directive = line_directive(text))
+            parts_.push_back({line, directive->number,
+                              directive->file_name.empty() ? parts_.back().file_name
+                                                           : std::move(directive->file_name)});
+    }
     append(part);
     append("\n");
 }
@@ -131,7 +166,7 @@ std::string ProgramText::in_parts(std::string_view log) const {
         if (parsed.ec != std::errc() || behind == parts_.begin()) continue;
         const Part& part = *std::prev(behind);
         out += log.substr(rest, begin - rest);
-        out += part.file_name + ":" + std::to_string(line - part.line);
+        out += part.file_name + ":" + std::to_string(part.first + line - part.line - 1);
         rest = at += number.size();
     }
     return out.append(log.substr(rest));
@@ -159,6 +194,7 @@ std::vector<ProgramText::Complaint> ProgramText::errors(std::string_view log,
         std::size_t line = 0;
         std::from_chars(number.data(), number.data() + number.size(), line);
         std::string_view complained = text;
+        line = line < part->first ? 0 : line - part->first + 1;
         for (; line > 0 && !complained.empty(); --line)
             complained.remove_prefix(std::min(complained.find('\n'), complained.size() - 1) + 1);
         found.push_back({message, complained.substr(0, complained.find('\n'))});

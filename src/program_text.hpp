@@ -17,8 +17,9 @@ public:
 
     [[nodiscard]] const std::string& text() const { return text_; }
 
-    /// A compiler's log with the names and lines of the parts. NVIDIA's compiler and Oclgrind do not
-    /// follow #line, and count the lines of the whole text of "<kernel>" and "input.cl".
+    /// A compiler's log with the names and lines of the parts, and of the #line directives in them.
+    /// NVIDIA's compiler and Oclgrind do not follow #line: they count the lines of the whole text and
+    /// name it "<kernel>" and "input.cl".
     [[nodiscard]] std::string in_parts(std::string_view log) const;
 
     /// An error of such a log.
@@ -32,7 +33,8 @@ public:
 
 private:
     struct Part {
-        std::size_t line;  ///< of its #line, in the whole text
+        std::size_t line;   ///< of its #line, in the whole text
+        std::size_t first;  ///< the number that its #line gives to the next line
         std::string file_name;
     };
 

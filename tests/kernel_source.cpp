@@ -1,4 +1,5 @@
 // Sources include the library's headers without a path, and their errors have the user's own lines.
+#include "program_text.hpp"
 #include "support/errors.hpp"
 #include "support/inserts.hpp"
 
@@ -12,6 +13,24 @@ kernel void insert_one(CELLIST_LISTS(Item, lists))
     cellist_insert(lists, 2, item);
 }
 )";
+
+TEST_CASE("#line directives in a source name the places of a log that counts whole lines") {
+    detail::ProgramText program;
+    program.add("a\n#line 40 \"mine.cl\"\nb\nc\n # line 7\nd", "user.cl");
+    program.add("e", "library.cl");
+    // Whole lines: 1 #line, 2 a, 3 #line, 4 b, 5 c, 6 #line, 7 d, 8 #line, 9 e.
+    const auto place = [&](int line) {
+        return program.in_parts("<kernel>:" + std::to_string(line) + ":1: error: x");
+    };
+    CHECK(place(2) == "user.cl:1:1: error: x");
+    CHECK(place(4) == "mine.cl:40:1: error: x");
+    CHECK(place(5) == "mine.cl:41:1: error: x");
+    CHECK(place(7) == "mine.cl:7:1: error: x");
+    CHECK(place(9) == "library.cl:1:1: error: x");
+    const auto errors = program.errors("mine.cl:41:1: error: x", "mine.cl");
+    REQUIRE(errors.size() == 1);
+    CHECK(errors[0].line == "c");
+}
 
 TEST_CASE("the include line of the library may be written in any way") {
     Lists<Item> lists(device(), {5});

@@ -115,7 +115,8 @@ TEST_CASE("bad arguments are refused") {
 
 TEST_CASE("a machine without OpenCL is told so") {
     const Program program = oit_program();
-    program.require_refused("knot.obj", "no OpenCL device", "OCL_ICD_VENDORS=/nonexistent");
+    program.require_refused("knot.obj", "no OpenCL device",
+                            "OCL_ICD_VENDORS=/nonexistent OCL_ICD_FILENAMES=");
     program.require_refused("knot.obj", "nosuchdevice", "CELLIST_DEVICE=nosuchdevice");
 }
 
