@@ -6,9 +6,9 @@
 #include <numeric>
 #include <vector>
 
+#include "frame/node_layout.hpp"
 #include "image.hpp"
-#include "node_layout.hpp"
-#include "reference_blend.hpp"
+#include "reference/blend.hpp"
 
 namespace bench {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <cellist/opencl.hpp>
 
-#include "reference.hpp"
+#include "reference/reference.hpp"
 
 namespace bench {
 

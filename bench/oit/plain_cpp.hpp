@@ -7,7 +7,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "frame.hpp"
+#include "frame/frame.hpp"
 
 namespace bench {
 

@@ -13,11 +13,11 @@
 #include "files.hpp"
 #include "input_error.hpp"
 #include "mesh.hpp"
-#include "method.hpp"
-#include "number_text.hpp"
+#include "methods/method.hpp"
 #include "raster/rasteriser.hpp"
 #include "read_file.hpp"
-#include "scenes.hpp"
+#include "report/number_text.hpp"
+#include "scene/scenes.hpp"
 
 namespace oit {
 namespace {

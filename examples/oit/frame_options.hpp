@@ -11,7 +11,7 @@
 #include <cellist/cellist.hpp>
 
 #include "camera.hpp"
-#include "frame.hpp"
+#include "frame/frame.hpp"
 #include "mesh.hpp"
 
 namespace CLI {

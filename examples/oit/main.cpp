@@ -8,19 +8,19 @@
 
 #include <cellist/cellist.hpp>
 
+#include "budget/keeper.hpp"
 #include "command_line.hpp"
-#include "comparison.hpp"
 #include "files.hpp"
-#include "frame.hpp"
-#include "frame_json.hpp"
+#include "frame/frame.hpp"
 #include "image.hpp"
-#include "keeper.hpp"
+#include "methods/renderer.hpp"
 #include "options.hpp"
-#include "picture.hpp"
 #include "progress.hpp"
-#include "reference.hpp"
-#include "renderer.hpp"
-#include "report.hpp"
+#include "reference/comparison.hpp"
+#include "reference/reference.hpp"
+#include "report/frame_json.hpp"
+#include "report/picture.hpp"
+#include "report/report.hpp"
 #include "stopwatch.hpp"
 
 namespace {

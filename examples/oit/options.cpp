@@ -8,12 +8,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include "budget/setting.hpp"
 #include "command_line.hpp"
 #include "files.hpp"
 #include "image.hpp"
 #include "input_error.hpp"
-#include "number_text.hpp"
-#include "setting.hpp"
+#include "report/number_text.hpp"
 
 namespace oit {
 namespace {

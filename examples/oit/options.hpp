@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "chooser.hpp"
+#include "budget/chooser.hpp"
 #include "frame_options.hpp"
-#include "picture_name.hpp"
+#include "report/picture_name.hpp"
 
 namespace oit {
 

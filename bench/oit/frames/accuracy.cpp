@@ -2,11 +2,11 @@
 
 #include <cmath>
 
-#include "comparison.hpp"
+#include "methods/renderer.hpp"
 #include "oit/frames/run.hpp"
 #include "oit/other_orders.hpp"
-#include "renderer.hpp"
-#include "scenes.hpp"
+#include "reference/comparison.hpp"
+#include "scene/scenes.hpp"
 
 namespace bench {
 namespace {

@@ -4,11 +4,11 @@
 #include <array>
 #include <stdexcept>
 
-#include "comparison.hpp"
-#include "number_text.hpp"
+#include "methods/renderer.hpp"
 #include "oit/frames/run.hpp"
 #include "oit/plain_cpp.hpp"
-#include "renderer.hpp"
+#include "reference/comparison.hpp"
+#include "report/number_text.hpp"
 
 namespace bench {
 namespace {

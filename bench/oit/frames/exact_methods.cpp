@@ -4,10 +4,10 @@
 #include <array>
 #include <memory>
 
-#include "method.hpp"
+#include "budget/setting.hpp"
+#include "methods/method.hpp"
+#include "methods/renderer.hpp"
 #include "oit/frames/run.hpp"
-#include "renderer.hpp"
-#include "setting.hpp"
 
 namespace bench {
 namespace {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <memory>
 
-#include "comparison.hpp"
+#include "budget/setting.hpp"
+#include "methods/renderer.hpp"
 #include "oit/frames/run.hpp"
-#include "renderer.hpp"
-#include "setting.hpp"
+#include "reference/comparison.hpp"
 
 namespace bench {
 namespace {

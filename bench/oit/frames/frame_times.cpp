@@ -3,8 +3,8 @@
 
 #include <array>
 
+#include "methods/renderer.hpp"
 #include "oit/frames/run.hpp"
-#include "renderer.hpp"
 #include "stopwatch.hpp"
 
 namespace bench {

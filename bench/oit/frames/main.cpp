@@ -8,8 +8,8 @@
 
 #include "command_line.hpp"
 #include "files.hpp"
-#include "number_text.hpp"
 #include "oit/frames/run.hpp"
+#include "report/number_text.hpp"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "input_error.hpp"
-#include "scenes.hpp"
+#include "scene/scenes.hpp"
 
 namespace bench {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "command_line.hpp"
 #include "input_error.hpp"
-#include "scenes.hpp"
+#include "scene/scenes.hpp"
 
 namespace oit {
 namespace {

@@ -6,7 +6,7 @@
 #include "files.hpp"
 #include "frame_options.hpp"
 #include "input_error.hpp"
-#include "number_text.hpp"
+#include "report/number_text.hpp"
 
 namespace oit {
 namespace {

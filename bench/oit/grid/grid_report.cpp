@@ -4,7 +4,7 @@
 #include <iomanip>
 #include <ostream>
 
-#include "number_text.hpp"
+#include "report/number_text.hpp"
 
 namespace oit {
 namespace {

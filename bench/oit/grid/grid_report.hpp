@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "budget/chooser.hpp"
 #include "cases.hpp"
-#include "chooser.hpp"
 #include "grid_options.hpp"
 #include "search.hpp"
 

@@ -8,14 +8,14 @@
 
 #include <cellist/cellist.hpp>
 
+#include "budget/keeper.hpp"
 #include "cases.hpp"
 #include "command_line.hpp"
 #include "files.hpp"
-#include "frame_json.hpp"
 #include "grid_options.hpp"
 #include "grid_report.hpp"
 #include "input_error.hpp"
-#include "keeper.hpp"
+#include "report/frame_json.hpp"
 #include "search.hpp"
 
 namespace {

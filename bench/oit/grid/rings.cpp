@@ -3,8 +3,8 @@
 
 #include <glm/ext/matrix_transform.hpp>
 
-#include "scenes.hpp"
-#include "shapes.hpp"
+#include "scene/scenes.hpp"
+#include "scene/shapes.hpp"
 
 namespace oit {
 namespace {

@@ -7,9 +7,9 @@
 #include <stdexcept>
 
 #include "image.hpp"
+#include "methods/renderer.hpp"
 #include "oit/other_orders.hpp"
 #include "progress.hpp"
-#include "renderer.hpp"
 #include "stopwatch.hpp"
 
 namespace oit {

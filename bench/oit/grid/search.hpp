@@ -10,11 +10,11 @@
 
 #include <cellist/cellist.hpp>
 
-#include "budget.hpp"
-#include "frame.hpp"
-#include "reference.hpp"
-#include "setting.hpp"
-#include "survey.hpp"
+#include "budget/budget.hpp"
+#include "budget/setting.hpp"
+#include "budget/survey.hpp"
+#include "frame/frame.hpp"
+#include "reference/reference.hpp"
 
 namespace oit {
 

@@ -1,8 +1,8 @@
 // How much light reaches a depth is kept as a function of a few steps.
 #include <array>
 
-#include "accumulating.hpp"
-#include "list_method.hpp"
+#include "methods/accumulating.hpp"
+#include "methods/list_method.hpp"
 #include "oit_kernels.hpp"
 
 namespace oit {

@@ -3,8 +3,8 @@
 #include <bit>
 #include <limits>
 
+#include "methods/peeling_common.hpp"
 #include "oit_kernels.hpp"
-#include "peeling.hpp"
 
 namespace oit {
 namespace {

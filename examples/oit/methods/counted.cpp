@@ -1,5 +1,5 @@
 // Contiguous lists: the passes run twice, to count and to fill.
-#include "list_method.hpp"
+#include "methods/list_method.hpp"
 
 namespace oit {
 namespace {

@@ -1,6 +1,6 @@
 // The scene is drawn once for every two layers, and takes the nearest and the farthest that are left.
+#include "methods/peeling_common.hpp"
 #include "oit_kernels.hpp"
-#include "peeling.hpp"
 
 namespace oit {
 namespace {

@@ -1,5 +1,5 @@
 // An array of equal length for each pixel, in one pass.
-#include "list_method.hpp"
+#include "methods/list_method.hpp"
 
 namespace oit {
 namespace {

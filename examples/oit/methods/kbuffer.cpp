@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "list_method.hpp"
+#include "methods/list_method.hpp"
 
 namespace oit {
 namespace {

@@ -1,5 +1,5 @@
 // A linked list for each pixel, in one pass.
-#include "list_method.hpp"
+#include "methods/list_method.hpp"
 
 namespace oit {
 namespace {

@@ -1,5 +1,5 @@
 // How much light reaches a depth is found from four moments of the absorbance in front.
-#include "accumulating.hpp"
+#include "methods/accumulating.hpp"
 #include "oit_kernels.hpp"
 
 namespace oit {

@@ -1,8 +1,7 @@
 // The scene is drawn once for each layer, and takes the nearest that is behind the last.
-#include "peeling.hpp"
-
 #include <algorithm>
 
+#include "methods/peeling_common.hpp"
 #include "oit_kernels.hpp"
 
 namespace oit {

@@ -1,7 +1,7 @@
 // Fragments hide each other at random, in a number of trials.
 #include <array>
 
-#include "accumulating.hpp"
+#include "methods/accumulating.hpp"
 #include "oit_kernels.hpp"
 
 namespace oit {

@@ -1,5 +1,5 @@
 // A weighted mean of all fragments, in one pass.
-#include "accumulating.hpp"
+#include "methods/accumulating.hpp"
 #include "oit_kernels.hpp"
 
 namespace oit {

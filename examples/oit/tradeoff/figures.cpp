@@ -1,12 +1,12 @@
-#include "figures.hpp"
+#include "tradeoff/figures.hpp"
 
 #include <cmath>
 #include <iomanip>
 #include <ostream>
 #include <string>
 
-#include "frame_json.hpp"
-#include "number_text.hpp"
+#include "report/frame_json.hpp"
+#include "report/number_text.hpp"
 
 namespace oit {
 namespace {

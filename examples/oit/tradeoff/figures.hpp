@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sweep.hpp"
+#include "tradeoff/sweep.hpp"
 
 namespace oit {
 

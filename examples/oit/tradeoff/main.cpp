@@ -5,15 +5,15 @@
 #include <cellist/cellist.hpp>
 
 #include "command_line.hpp"
-#include "figures.hpp"
 #include "files.hpp"
-#include "frame_json.hpp"
 #include "input_error.hpp"
-#include "number_text.hpp"
-#include "page.hpp"
 #include "progress.hpp"
-#include "sweep.hpp"
-#include "tradeoff_options.hpp"
+#include "report/frame_json.hpp"
+#include "report/number_text.hpp"
+#include "tradeoff/figures.hpp"
+#include "tradeoff/page.hpp"
+#include "tradeoff/sweep.hpp"
+#include "tradeoff/tradeoff_options.hpp"
 
 namespace {
 

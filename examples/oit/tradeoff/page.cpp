@@ -1,12 +1,12 @@
-#include "page.hpp"
+#include "tradeoff/page.hpp"
 
 #include <cmath>
 #include <cstdint>
 
-#include "figures.hpp"
-#include "frame_json.hpp"
 #include "image.hpp"
-#include "picture.hpp"
+#include "report/frame_json.hpp"
+#include "report/picture.hpp"
+#include "tradeoff/figures.hpp"
 #include "tradeoff_kernels.hpp"
 
 namespace oit {

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "frame.hpp"
-#include "reference.hpp"
-#include "sweep.hpp"
+#include "frame/frame.hpp"
+#include "reference/reference.hpp"
+#include "tradeoff/sweep.hpp"
 
 namespace oit {
 

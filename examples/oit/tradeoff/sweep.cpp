@@ -1,4 +1,4 @@
-#include "sweep.hpp"
+#include "tradeoff/sweep.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "measurement.hpp"
-#include "tradeoff_options.hpp"
+#include "budget/measurement.hpp"
+#include "tradeoff/tradeoff_options.hpp"
 
 namespace oit {
 

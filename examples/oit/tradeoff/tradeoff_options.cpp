@@ -1,4 +1,4 @@
-#include "tradeoff_options.hpp"
+#include "tradeoff/tradeoff_options.hpp"
 
 #include <algorithm>
 #include <array>

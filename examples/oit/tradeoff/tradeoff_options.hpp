@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "frame_options.hpp"
-#include "method.hpp"
+#include "methods/method.hpp"
 
 namespace oit {
 

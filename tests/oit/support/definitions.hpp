@@ -13,7 +13,7 @@
 #include <glm/matrix.hpp>
 #include <glm/vec3.hpp>
 
-#include "reference.hpp"
+#include "reference/reference.hpp"
 
 // The approximations as their papers define them, in double precision.
 namespace cellist::test::defined {

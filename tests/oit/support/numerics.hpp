@@ -13,10 +13,10 @@
 #include <cellist/cellist.hpp>
 
 #include "camera.hpp"
-#include "comparison.hpp"
-#include "reference.hpp"
-#include "renderer.hpp"
-#include "scenes.hpp"
+#include "methods/renderer.hpp"
+#include "reference/comparison.hpp"
+#include "reference/reference.hpp"
+#include "scene/scenes.hpp"
 
 // What docs/numerics.md promises, and what is measured of it: a test and the program that writes the
 // tables of the document share this.

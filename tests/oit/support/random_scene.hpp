@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "oit/support/procedural.hpp"
-#include "scene.hpp"
+#include "scene/scene.hpp"
 
 namespace cellist::test {
 

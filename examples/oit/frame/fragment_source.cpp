@@ -1,0 +1,221 @@
+#include "frame/fragment_source.hpp"
+
+#include <initializer_list>
+
+#include "frame/blend_function.hpp"
+#include "oit_kernels.hpp"
+
+namespace oit {
+namespace {
+
+constexpr cl_uint no_owner = 0xFFFFFFFF;
+
+std::string joined(std::initializer_list<std::string_view> parts) {
+    std::string text;
+    for (const std::string_view part : parts) text.append(part).append("\n");
+    return text;
+}
+
+std::vector<const support::Mesh*> meshes_of(const Scene& scene) {
+    std::vector<const support::Mesh*> meshes;
+    for (const Model& model : scene.models) meshes.push_back(&model.mesh);
+    return meshes;
+}
+
+std::vector<raster::Placed> placed_at(const Scene& scene, double time) {
+    std::vector<raster::Placed> placed;
+    for (const Instance& instance : scene.instances)
+        placed.push_back({.mesh = instance.model,
+                          .to_world = place_at(instance, time),
+                          .tag = static_cast<cl_uint>(instance.material)});
+    return placed;
+}
+
+std::vector<std::size_t> chosen(const Scene& scene, bool opaque) {
+    std::vector<std::size_t> instances;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i)
+        if (scene.is_opaque(scene.instances[i]) == opaque) instances.push_back(i);
+    return instances;
+}
+
+std::vector<cl_float> opacities_of(const Scene& scene) {
+    std::vector<cl_float> opacities;
+    for (const Model& model : scene.models)
+        if (model.opacities.empty())
+            opacities.insert(opacities.end(), model.mesh.positions.size(), 1.0F);
+        else
+            opacities.insert(opacities.end(), model.opacities.begin(), model.opacities.end());
+    return opacities;
+}
+
+std::vector<cl_float> tints_of(const Scene& scene) {
+    std::vector<cl_float> tints;
+    for (const Model& model : scene.models) {
+        if (model.tints.empty()) tints.insert(tints.end(), 3 * model.mesh.positions.size(), 1.0F);
+        for (const glm::vec3& tint : model.tints)
+            tints.insert(tints.end(), {tint.x, tint.y, tint.z});
+    }
+    return tints;
+}
+
+OitFrame constants_of(const Frame& frame, const Needs& needs) {
+    return {.look = frame.scene.look,
+            .alpha = needs.alpha,
+            .least_depth = needs.least_depth,
+            .greatest_depth = needs.greatest_depth,
+            .colour_max = needs.colour_max,
+            .epsilon = frame.quality.epsilon,
+            .first_pixel = 0,
+            .end_pixel = static_cast<cl_uint>(frame.pixels())};
+}
+
+cellist::Range screen_of(const Frame& frame, std::size_t samples_across) {
+    const auto padded = [](std::size_t side) { return (side + 7) / 8 * 8; };
+    cellist::Range range(padded(static_cast<std::size_t>(frame.width()) * samples_across),
+                         padded(static_cast<std::size_t>(frame.height())), frame.views.size());
+    range.local = {8, 8, 1};
+    return range;
+}
+
+std::size_t samples_of(const Quality& quality) { return static_cast<std::size_t>(quality.samples); }
+
+bool is_reduced(const Frame& frame) { return frame.quality.reduce > 1; }
+
+bool resolves_samples(const Quality& quality) {
+    return quality.samples > 1 && quality.resolve == Resolve::per_sample;
+}
+
+raster::Sampling sampling_of(const Quality& quality) {
+    return {.samples = quality.samples, .depth_range = quality.depth_range};
+}
+
+}  // namespace
+
+FragmentSource::Opaque::Passes::Passes(const FragmentSource& source)
+    : triangles(source.device_, source.projection_, chosen(source.frame_.scene, true)),
+      depth(source.device_, sampling_of(source.frame_.quality),
+            joined({source.defines_, kernels::shading_clh, kernels::opaque_depth_cl}),
+            "opaque_depth.cl", cellist::type<OitFrame>),
+      owner(source.device_, sampling_of(source.frame_.quality),
+            joined({source.defines_, kernels::shading_clh, kernels::opaque_owner_cl}),
+            "opaque_owner.cl", cellist::type<OitFrame>),
+      colour(source.device_, sampling_of(source.frame_.quality),
+             joined({source.defines_, kernels::shading_clh, kernels::corners_clh,
+                     kernels::opaque_colour_cl}),
+             "opaque_colour.cl", cellist::type<OitFrame>, cellist::type<Material>),
+      owners(source.device_, source.samples()) {}
+
+FragmentSource::Opaque::Opaque(const FragmentSource& source)
+    : depth_bits(source.device_, source.samples()),
+      colour(source.device_, is_reduced(source.frame_) ? 1 : source.samples()) {
+    if (!is_reduced(source.frame_)) passes.emplace(source);
+}
+
+FragmentSource::FragmentSource(const cellist::Device& device, const Frame& frame)
+    : device_(device),
+      frame_(frame),
+      needs_(needs_of(frame)),
+      layout_(node_layout(frame.quality, needs_)),
+      constants_(constants_of(frame, needs_)),
+      defines_(defines_of(frame, needs_) + defines_of(layout_)),
+      setup_(device, sampling_of(frame.quality)),
+      geometry_(device, meshes_of(frame.scene)),
+      projection_(device, setup_, geometry_, placed_at(frame.scene, frame.time), frame.views),
+      transparent_(device, projection_, chosen(frame.scene, false)),
+      materials_(device, frame.scene.materials),
+      screen_(screen_of(frame, resolves_samples(frame.quality) ? samples_of(frame.quality) : 1)),
+      image_(device, (is_reduced(frame) ? 2 : 1) * frame.pixels()) {
+    if (needs_.opacities) opacities_.emplace(device, opacities_of(frame.scene));
+    if (needs_.tints) tints_.emplace(device, tints_of(frame.scene));
+    if (needs_.opaque) opaque_ = std::make_unique<Opaque>(*this);
+    if (resolves_samples(frame.quality)) {
+        sample_image_.emplace(device, frame.pixels() * samples_of(frame.quality));
+        average_.emplace(device,
+                         cellist::Source{.text = joined({defines_, kernels::average_cl}),
+                                         .file_name = "average.cl"},
+                         "oit_average");
+    }
+    if (frame.blend_function) check_blend_function(device, defines_, *frame.blend_function);
+}
+
+void FragmentSource::follow() {
+    const Needs now = needs_of(frame_);
+    needs_.least_depth = now.least_depth;
+    needs_.greatest_depth = now.greatest_depth;
+    constants_ = constants_of(frame_, needs_);
+    projection_.move(placed_at(frame_.scene, frame_.time), frame_.views);
+}
+
+void FragmentSource::transform() { projection_.transform(); }
+
+void FragmentSource::prepare() {
+    transparent_.bin();
+    if (!opaque_ || !opaque_->passes) return;
+    Opaque& o = *opaque_;
+    Opaque::Passes& passes = *opaque_->passes;
+    passes.triangles.bin();
+    o.depth_bits.fill(infinity_bits);
+    passes.owners.fill(no_owner);
+    passes.triangles.draw(passes.depth, o.depth_bits);
+    passes.triangles.draw(passes.owner, passes.owners, o.depth_bits);
+    with(tints_, [&](const auto&... tints) {
+        passes.triangles.draw(passes.colour, passes.owners, o.depth_bits, o.colour, constants_,
+                              materials_, geometry_.normals(), tints...);
+    });
+}
+
+void FragmentSource::set_slice(const cellist::Slice& slice) {
+    constants_.first_pixel = static_cast<cl_uint>(slice.first_cell);
+    constants_.end_pixel = static_cast<cl_uint>(slice.first_cell + slice.cells);
+}
+
+void FragmentSource::finish() {
+    if (average_)
+        average_->run(cellist::Range::padded(image_.size(), 64), *sample_image_, image_,
+                      static_cast<cl_uint>(image_.size()));
+}
+
+bool FragmentSource::complete() {
+    const bool opaque = !opaque_ || !opaque_->passes || opaque_->passes->triangles.complete();
+    return transparent_.complete() && opaque;
+}
+
+cellist::Shape FragmentSource::shape() const {
+    return {static_cast<std::uint64_t>(frame_.width()), static_cast<std::uint64_t>(frame_.height()),
+            frame_.views.size()};
+}
+
+raster::Sampling FragmentSource::sampling() const { return sampling_of(frame_.quality); }
+
+std::string FragmentSource::pass_text(std::string_view source) const {
+    return joined({defines_, "#define OIT_PASS", kernels::shading_clh, kernels::corners_clh,
+                   kernels::fragment_clh, kernels::node_clh, source, kernels::surface_clh});
+}
+
+cellist::Source FragmentSource::screen_source(std::string_view source,
+                                              const std::string& file_name) const {
+    return {.text = joined({"#include <cellist/lists.clh>\n#pragma OPENCL FP_CONTRACT OFF",
+                            defines_, kernels::shading_clh, kernels::fragment_clh,
+                            kernels::node_clh, blend_function_text(frame_.blend_function),
+                            kernels::blend_clh, kernels::screen_clh, source}),
+            .file_name = file_name,
+            .options = raster::build_options(device_)};
+}
+
+std::uint64_t FragmentSource::device_bytes() const {
+    std::uint64_t bytes = geometry_.device_bytes() + projection_.device_bytes() +
+                          transparent_.device_bytes() + materials_.size() * sizeof(Material) +
+                          image_.size() * sizeof(cl_float4);
+    if (opacities_) bytes += opacities_->size() * sizeof(cl_float);
+    if (tints_) bytes += tints_->size() * sizeof(cl_float);
+    if (sample_image_) bytes += sample_image_->size() * sizeof(cl_float4);
+    if (!opaque_) return bytes;
+    bytes +=
+        opaque_->depth_bits.size() * sizeof(cl_uint) + opaque_->colour.size() * sizeof(cl_float4);
+    if (opaque_->passes)
+        bytes += opaque_->passes->triangles.device_bytes() +
+                 opaque_->passes->owners.size() * sizeof(cl_uint);
+    return bytes;
+}
+
+}  // namespace oit

@@ -1,0 +1,185 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <cellist/cellist.hpp>
+
+#include "frame/frame.hpp"
+#include "frame/needs.hpp"
+#include "frame/node_layout.hpp"
+#include "frame/oit_frame.hpp"
+#include "raster/rasteriser.hpp"
+
+namespace oit {
+
+/// What depths as bits of floats begin with, where atomic minima find the least.
+inline constexpr cl_uint infinity_bits =
+    std::bit_cast<cl_uint>(std::numeric_limits<cl_float>::infinity());
+
+/// What all methods have in common: projects a frame's scene, draws its opaque surfaces, and hands the
+/// transparent fragments in front of them to a method's pass; then kernels over the pixels make the
+/// image.
+class FragmentSource {
+public:
+    /// Refers to the device and the frame, which must outlive it. Throws InputError where the user's
+    /// blend function does not compile, cellist::Error where the device cannot hold the image.
+    FragmentSource(const cellist::Device& device, const Frame& frame);
+
+    /// The frame has another time, or other views of the same size. Blocks.
+    void follow();
+
+    /// Projects the vertices. Does not block.
+    void transform();
+
+    /// Divides large triangles into blocks and draws the opaque surfaces. Does not block. With
+    /// Quality::reduce, the opaque depths are the caller's to write.
+    void prepare();
+
+    /// Whether everything was drawn since prepare(). If not, there is room for it now, and the frame
+    /// begins again there. Blocks.
+    [[nodiscard]] bool complete();
+
+    /// From now on, kernels over the pixels blend those of the slice alone: see Frame::memory_bytes.
+    void set_slice(const cellist::Slice& slice);
+
+    /// The kernels of a pass: `source` defines OIT_TARGET, OIT_TARGET_PASS and oit_store (see
+    /// surface.clh), where OIT_PASS is defined. `uses` are containers and types, as in cellist::Kernel.
+    template <class... Uses>
+    [[nodiscard]] raster::Pass pass(std::string_view source, const std::string& file_name,
+                                    const Uses&... uses) const {
+        return with_node_type(layout_.words, [&]<class Node>(const Node*) {
+            return raster::Pass(device_, sampling(), pass_text(source), file_name,
+                                cellist::type<OitFrame>, cellist::type<Material>,
+                                cellist::type<Node>, uses...);
+        });
+    }
+
+    /// Enqueues a pass over all transparent fragments; `targets` are those of OIT_TARGET.
+    template <class... Targets>
+    void draw(raster::Pass& pass, const Targets&... targets) {
+        with(tints_, [&](const auto&... tints) {
+            with(opacities_, [&](const auto&... opacities) {
+                with(depth_bits(), [&](const auto&... depths) {
+                    transparent_.draw(pass, targets..., constants_, materials_, geometry_.normals(),
+                                      tints..., opacities..., depths...);
+                });
+            });
+        });
+    }
+
+    /// A kernel over the pixels: its last parameters are OIT_SCREEN (see screen.clh).
+    template <class... Uses>
+    [[nodiscard]] cellist::Kernel screen_kernel(std::string_view source,
+                                                const std::string& file_name,
+                                                const std::string& name,
+                                                const Uses&... uses) const {
+        return with_node_type(layout_.words, [&]<class Node>(const Node*) {
+            return cellist::Kernel(device_, screen_source(source, file_name), name,
+                                   cellist::type<raster::View>, cellist::type<OitFrame>,
+                                   cellist::type<Node>, uses...);
+        });
+    }
+
+    /// Enqueues such a kernel; `args` are those in front of OIT_SCREEN.
+    template <class... Args>
+    void run_on_screen(cellist::Kernel& step, const Args&... args) {
+        const cellist::Buffer<cl_float4>& image = sample_image_ ? *sample_image_ : image_;
+        if (opaque_)
+            step.run(screen_, args..., constants_, projection_.views(), opaque_->depth_bits,
+                     opaque_->colour, image);
+        else
+            step.run(screen_, args..., constants_, projection_.views(), image);
+    }
+
+    /// Averages samples that were blended on their own. Does not block.
+    void finish();
+
+    [[nodiscard]] const cellist::Device& device() const { return device_; }
+    [[nodiscard]] const Frame& frame() const { return frame_; }
+    [[nodiscard]] const Needs& needs() const { return needs_; }
+    [[nodiscard]] const NodeLayout& layout() const { return layout_; }
+    /// Floats for what is blended of a pixel: see screen.clh.
+    [[nodiscard]] std::uint32_t state_floats() const {
+        return oit::state_floats(frame_.quality, needs_);
+    }
+    /// Of all pixels of all eyes.
+    [[nodiscard]] std::size_t samples() const {
+        return frame_.pixels() * static_cast<std::size_t>(frame_.quality.samples);
+    }
+    /// Width, height and eyes: a cell for each pixel.
+    [[nodiscard]] cellist::Shape shape() const;
+    /// The linear image, eye by eye, row by row from the top. With Quality::reduce, two vectors a pixel:
+    /// what the transparent surfaces add, and the part of the light behind that they let pass.
+    [[nodiscard]] const cellist::Buffer<cl_float4>& image() const { return image_; }
+    /// The least depth of the opaque surfaces in each sample, as the bits of floats; null where there are
+    /// none.
+    [[nodiscard]] const cellist::Buffer<cl_uint>* depth_bits() const {
+        return opaque_ ? &opaque_->depth_bits : nullptr;
+    }
+    /// Geometry, projection, opaque surfaces and image.
+    [[nodiscard]] std::uint64_t device_bytes() const;
+
+private:
+    // What only a frame with opaque surfaces has.
+    struct Opaque {
+        // Without Quality::reduce.
+        struct Passes {
+            raster::Triangles triangles;
+            raster::Pass depth;
+            raster::Pass owner;
+            raster::Pass colour;
+            cellist::Buffer<cl_uint> owners;
+
+            explicit Passes(const FragmentSource& source);
+        };
+        std::optional<Passes> passes;
+        cellist::Buffer<cl_uint> depth_bits;  ///< of each sample
+        cellist::Buffer<cl_float4> colour;
+
+        explicit Opaque(const FragmentSource& source);
+    };
+
+    // Calls use() with a buffer, or without it where it is not there.
+    template <class Optional, class Use>
+    static void with(const Optional& buffer, const Use& use) {
+        if (buffer)
+            use(*buffer);
+        else
+            use();
+    }
+
+    [[nodiscard]] raster::Sampling sampling() const;
+    [[nodiscard]] std::string pass_text(std::string_view source) const;
+    [[nodiscard]] cellist::Source screen_source(std::string_view source,
+                                                const std::string& file_name) const;
+
+    const cellist::Device& device_;
+    const Frame& frame_;
+    Needs needs_;
+    NodeLayout layout_;
+    OitFrame constants_;
+    std::string defines_;
+    raster::SetupKernels setup_;
+    raster::Geometry geometry_;
+    raster::Projection projection_;
+    raster::Triangles transparent_;
+    cellist::Buffer<Material> materials_;
+    // Of vertices, as geometry_ has them.
+    std::optional<cellist::Buffer<cl_float>> opacities_;
+    std::optional<cellist::Buffer<cl_float>> tints_;  ///< 3 each
+    std::unique_ptr<Opaque> opaque_;
+    cellist::Range screen_;
+    cellist::Buffer<cl_float4> image_;
+    std::optional<cellist::Buffer<cl_float4>>
+        sample_image_;  ///< of each pixel, with per-sample resolve
+    std::optional<cellist::Kernel> average_;
+};
+
+}  // namespace oit

@@ -1,0 +1,147 @@
+#include "frame/needs.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include <glm/geometric.hpp>
+
+namespace oit {
+namespace {
+
+// Around the axis about which an instance turns, so that it holds at any time.
+struct Ball {
+    glm::dvec3 centre;
+    double radius;
+};
+
+Ball ball_around(const Scene& scene, const Instance& instance) {
+    double radius = 0;
+    for (const glm::vec3& p : scene.models.at(instance.model).mesh.positions)
+        radius = std::max(radius, glm::length(glm::dvec3(p)));
+    double scale = 0;
+    for (int i = 0; i < 3; ++i) scale = std::max(scale, glm::length(glm::dvec3(instance.place[i])));
+    return {glm::dvec3(instance.place[3]), scale * radius};
+}
+
+void widen_depths(Needs& needs, const Ball& ball, const raster::View& view) {
+    const auto at = [&](int i) { return static_cast<double>(view.row_w[i]); };
+    const double depth =
+        at(0) * ball.centre.x + at(1) * ball.centre.y + at(2) * ball.centre.z + at(3);
+    const double reach = ball.radius * glm::length(glm::dvec3(at(0), at(1), at(2)));
+    constexpr double room = 1e-5;  // for rounding
+    needs.least_depth =
+        std::min(needs.least_depth, static_cast<float>((depth - reach) * (1 - room)));
+    needs.greatest_depth =
+        std::max(needs.greatest_depth, static_cast<float>((depth + reach) * (1 + room)));
+}
+
+// A bound of what shading.clh computes.
+float brightest(const Material& material, const Look& look) {
+    float most = 1;
+    for (int i = 0; i < 3; ++i) {
+        const float ambient = std::max(look.sky[i], look.ground[i]);
+        const float tint = std::max(material.front_tint[i], material.back_tint[i]);
+        most = std::max(
+            most, tint * (ambient + look.key[i]) + material.gloss * look.key[i] + look.rim[i]);
+    }
+    return most;
+}
+
+std::string define(const std::string& name, auto value) {
+    return "#define " + name + " " + std::to_string(value) + "\n";
+}
+
+// Of the samples, in pixels from the centre.
+std::string offsets_text(int samples) {
+    std::string text;
+    for (const raster::SampleOffset& offset : raster::sample_offsets(samples)) {
+        const auto part = [](int i) {
+            return std::to_string(i * RASTER_OFFSET_UNIT) + ".0f / " +
+                   std::to_string(RASTER_SUBPIXELS) + ".0f";
+        };
+        text += (text.empty() ? "(float2)(" : ", (float2)(") + part(offset.x) + ", " +
+                part(offset.y) + ")";
+    }
+    return text;
+}
+
+}  // namespace
+
+bool Needs::blend_varies() const { return std::popcount(blends) > 1 || has(Blend::absorb); }
+
+Needs needs_of(const Frame& frame) {
+    const Scene& scene = frame.scene;
+    Needs needs;
+    needs.least_depth = std::numeric_limits<float>::max();
+    bool first = true;
+    for (const Instance& instance : scene.instances) {
+        needs.tints = needs.tints || !scene.models.at(instance.model).tints.empty();
+        if (scene.is_opaque(instance)) {
+            needs.opaque = true;
+            continue;
+        }
+        const Material& material = scene.material_of(instance);
+        const auto blend = static_cast<Blend>(material.blend);
+        needs.blends |= 1U << material.blend;
+        needs.opacities = needs.opacities || !scene.models.at(instance.model).opacities.empty();
+        needs.shines = needs.shines || (blend == Blend::absorb && material.gloss > 0);
+        needs.alpha_varies = needs.alpha_varies || (!first && material.alpha != needs.alpha);
+        needs.alpha = material.alpha;
+        first = false;
+        needs.colour_max = std::max(needs.colour_max, brightest(material, scene.look));
+        for (const raster::View& view : frame.views)
+            widen_depths(needs, ball_around(scene, instance), view);
+    }
+    needs.alpha_varies = needs.alpha_varies || needs.opacities;
+    if (needs.shines) needs.blends |= 1U << static_cast<std::uint32_t>(Blend::additive);
+    needs.least_depth = std::max(needs.least_depth, frame.views.front().near_depth);
+    // Also where nothing is in front of the eye.
+    needs.greatest_depth = std::max(needs.greatest_depth, 2 * frame.views.front().near_depth);
+    needs.least_depth = std::min(needs.least_depth, 0.5F * needs.greatest_depth);
+    return needs;
+}
+
+std::uint32_t state_floats(const Quality& quality, const Needs& needs) {
+    const std::uint32_t transmittance = needs.transmittance_is_coloured() ? 3 : 1;
+    const std::uint32_t depth = needs.has(Blend::absorb) || needs.has(Blend::user) ? 1 : 0;
+    const std::uint32_t extinction = needs.has(Blend::absorb) ? 3 : 0;
+    const auto lights =
+        quality.resolve == Resolve::per_sample ? 1 : static_cast<std::uint32_t>(quality.samples);
+    return lights * (3 + transmittance + depth + extinction);
+}
+
+std::string defines_of(const Frame& frame, const Needs& needs) {
+    const Quality& quality = frame.quality;
+    std::string text;
+    constexpr const char* names[] = {"OPAQUE", "OVER", "ADDITIVE", "MULTIPLICATIVE",
+                                     "ABSORB", "USER", "LEAVE"};
+    for (std::uint32_t i = 0; i < std::size(names); ++i)
+        text += define(std::string("OIT_") + names[i], i);
+    text += define("OIT_FLOOR", static_cast<std::uint32_t>(Paint::floor));
+    text += define("OIT_BLENDS", needs.blends);
+    if (!needs.blend_varies())
+        text += define("OIT_ONLY_BLEND", needs.blends == 0 ? 1 : std::countr_zero(needs.blends));
+    text += define("OIT_SAMPLES", quality.samples);
+    text += define("OIT_STATE_FLOATS", state_floats(quality, needs));
+    if (needs.opaque) text += "#define OIT_HAS_OPAQUE\n";
+    if (needs.opacities) text += "#define OIT_HAS_OPACITIES\n";
+    if (needs.tints) text += "#define OIT_HAS_TINTS\n";
+    if (needs.has(Blend::absorb)) text += "#define OIT_ABSORBS\n";
+    if (needs.has(Blend::absorb) || needs.has(Blend::user)) text += "#define OIT_NEEDS_DISTANCE\n";
+    if (needs.has(Blend::user)) text += "#define OIT_USER_BLEND\n";
+    if (needs.transmittance_is_coloured()) text += "#define OIT_COLOURED\n";
+    if (quality.resolve == Resolve::per_sample && quality.samples > 1)
+        text += "#define OIT_PER_SAMPLE\n";
+    if (quality.depth_range)
+        text +=
+            "#define OIT_DEPTH_RANGE\n#define OIT_OFFSETS " + offsets_text(quality.samples) + "\n";
+    if (quality.epsilon > 0) text += "#define OIT_EARLY_END\n";
+    if (quality.reduce > 1) text += "#define OIT_REDUCED\n";
+    if (frame.memory_bytes) text += "#define OIT_SLICES\n";
+    if (quality.layers) text += define("OIT_LAYERS", *quality.layers);
+    return text;
+}
+
+}  // namespace oit

@@ -1,0 +1,26 @@
+#include "methods/accumulating.hpp"
+
+#include "input_error.hpp"
+#include "oit_kernels.hpp"
+
+namespace oit {
+
+std::string accumulating_text(std::string_view source) {
+    return std::string(kernels::accumulate_clh).append("\n").append(source);
+}
+
+std::string accumulating_refusal(const Frame& frame, const Needs& needs) {
+    if (needs.blends != 0 && needs.blends != 1U << static_cast<std::uint32_t>(Blend::over))
+        return "it knows surfaces that cover what is behind them, and no other kind of blending";
+    if (frame.quality.depth_range) return "it has no depths in each sample";
+    if (frame.quality.layers) return "it blends all layers at once";
+    return {};
+}
+
+void require_wide_sums(const cellist::Device& device) {
+    if (!device.info().int64_atomics)
+        throw support::InputError("adding fragments up needs atomic operations of 64 bits, which " +
+                                  device.info().name + " does not have");
+}
+
+}  // namespace oit

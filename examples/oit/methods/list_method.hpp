@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <cellist/options.hpp>
+
+#include "methods/method.hpp"
+
+namespace oit {
+
+/// What reads sorted lists: a kernel whose parameters are the lists and OIT_SCREEN.
+struct ListReader {
+    std::string text;
+    std::string file_name;
+    std::string kernel;
+};
+
+/// The method that keeps fragments in cellist::Lists with these options, and blends them nearest first;
+/// or leaves that to another reader. Under Frame::memory_bytes, a slice of the pixels at a time.
+[[nodiscard]] std::unique_ptr<Method> make_list_method(FragmentSource& source,
+                                                       const cellist::ListsOptions& options,
+                                                       std::optional<ListReader> reader = {});
+
+}  // namespace oit

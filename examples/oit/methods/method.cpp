@@ -1,0 +1,70 @@
+#include "methods/method.hpp"
+
+#include <algorithm>
+
+#include "closest.hpp"
+#include "input_error.hpp"
+
+namespace oit {
+namespace {
+
+std::vector<MethodInfo>& table() {
+    static std::vector<MethodInfo> methods;
+    return methods;
+}
+
+}  // namespace
+
+MethodRegistration::MethodRegistration(const MethodInfo& info) {
+    std::vector<MethodInfo>& methods = table();
+    const auto behind = std::find_if(methods.begin(), methods.end(), [&](const MethodInfo& other) {
+        return other.position > info.position;
+    });
+    methods.insert(behind, info);
+}
+
+std::span<const MethodInfo> methods() { return table(); }
+
+const MethodInfo& method_named(std::string_view name) {
+    std::string list;
+    std::vector<std::string> names;
+    for (const MethodInfo& info : table()) {
+        if (info.name == name) return info;
+        list.append(list.empty() ? "" : ", ").append(info.name);
+        names.emplace_back(info.name);
+    }
+    throw support::InputError("no method is called '" + std::string(name) + "'" +
+                              support::did_you_mean(name, names) + ": there are " + list);
+}
+
+std::uint32_t read_size_of(const MethodInfo& method, const std::string& text) {
+    std::string known;
+    for (const std::uint32_t size : method.sizes) {
+        if (std::to_string(size) == text) return size;
+        known += (known.empty() ? "" : ", ") + std::to_string(size);
+    }
+    const std::string name(method.name);
+    throw support::InputError("no size of the method " + name + " is '" + text +
+                              "': " + (known.empty() ? "it has none" : "there are " + known));
+}
+
+std::optional<PictureError> no_bound(const SceneMeasure&, const Quality&) { return {}; }
+
+std::optional<PictureError> bound_of_layers(const SceneMeasure& scene, const Quality& quality) {
+    const bool all = !quality.layers || *quality.layers >= scene.longest;
+    if (all && quality.epsilon == 0) return scene.format(quality.format);
+    if (quality.format != NodeFormat::float32) return {};
+    if (!all && quality.epsilon > 0) return {};
+    const SceneMeasure::Cut* cut =
+        all ? scene.epsilon_cut(quality.epsilon) : scene.layers_cut(*quality.layers);
+    if (cut == nullptr) return {};
+    return cut->error;
+}
+
+std::uint64_t one_pass(const SceneMeasure&, const Quality&) { return 1; }
+
+std::uint64_t two_passes(const SceneMeasure&, const Quality&) { return 2; }
+
+std::string refuses_nothing(const Frame&, const Needs&) { return {}; }
+
+}  // namespace oit

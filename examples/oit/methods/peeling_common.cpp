@@ -1,0 +1,28 @@
+#include "methods/peeling_common.hpp"
+
+#include "input_error.hpp"
+#include "oit_kernels.hpp"
+
+namespace oit {
+
+std::string peeling_text(std::string_view source) {
+    return std::string(kernels::peeling_common_clh).append("\n").append(source);
+}
+
+std::string peeling_refusal(const Frame& frame, const Needs&) {
+    if (frame.quality.depth_range) return "it has no depths in each sample";
+    if (frame.quality.samples > 1 && frame.quality.resolve == Resolve::per_sample)
+        return "it resolves samples by pixel";
+    return {};
+}
+
+void require_wide_atomics(const cellist::Device& device, std::string_view what) {
+    for (const cl::Device& one : device.context().getInfo<CL_CONTEXT_DEVICES>())
+        if (one.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_khr_int64_extended_atomics") ==
+            std::string::npos)
+            throw support::InputError(std::string(what) +
+                                      " needs atomic operations of 64 bits, which " +
+                                      device.info().name + " does not have");
+}
+
+}  // namespace oit

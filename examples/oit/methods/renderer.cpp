@@ -1,0 +1,114 @@
+#include "methods/renderer.hpp"
+
+#include "input_error.hpp"
+#include "stopwatch.hpp"
+
+namespace oit {
+namespace {
+
+std::unique_ptr<Method> make_method(FragmentSource& source, const MethodInfo& info) {
+    const std::string refusal = info.refusal(source.frame(), source.needs());
+    if (!refusal.empty())
+        throw support::InputError("the method " + std::string(info.name) +
+                                  " cannot draw this: " + refusal);
+    return info.make(source);
+}
+
+void check_memory(const Method& method, const std::optional<std::uint64_t>& most) {
+    if (most && method.device_bytes() > *most)
+        throw support::InputError("the method takes " + std::to_string(method.device_bytes()) +
+                                  " bytes, over the " + std::to_string(*most) +
+                                  " of --memory: raise it to that, or take a method with lists, "
+                                  "which are drawn in slices");
+}
+
+std::unique_ptr<Reduction> make_reduction(const cellist::Device& device, const Frame& frame) {
+    return frame.quality.reduce > 1 ? std::make_unique<Reduction>(device, frame) : nullptr;
+}
+
+}  // namespace
+
+Renderer::Renderer(const cellist::Device& device, const Frame& frame, const MethodInfo& method)
+    : device_(device),
+      reduction_(make_reduction(device, frame)),
+      source_(device, reduction_ ? reduction_->reduced() : frame),
+      method_(make_method(source_, method)) {}
+
+void Renderer::transform() {
+    if (reduction_) reduction_->transform();
+    source_.transform();
+}
+
+void Renderer::store() {
+    if (reduction_) reduction_->prepare(source_);
+    source_.prepare();
+    method_->store();
+    check_memory(*method_, source_.frame().memory_bytes);
+}
+
+void Renderer::resolve() {
+    method_->resolve();
+    source_.finish();
+    if (reduction_) reduction_->finish(source_);
+}
+
+bool Renderer::complete() {
+    const bool drawn = source_.complete();
+    return method_->complete() && drawn;
+}
+
+void Renderer::warm_up() {
+    // The first frame finds out how much room the second makes.
+    draw();
+    draw();
+}
+
+double Renderer::draw() {
+    device_.finish();
+    const support::Stopwatch stopwatch;
+    start();
+    finish();
+    return stopwatch.ms();
+}
+
+void Renderer::start() {
+    transform();
+    store_and_resolve();
+    device_.queue().flush();
+}
+
+void Renderer::finish() {
+    while (!complete()) store_and_resolve();
+    drawn_.wait();
+}
+
+void Renderer::store_and_resolve() {
+    store();
+    resolve();
+    drawn_ = device_.enqueue_marker();
+}
+
+double Renderer::draw_changed() {
+    if (reduction_) reduction_->follow();
+    source_.follow();
+    return draw();
+}
+
+PassTimes Renderer::draw_by_pass() {
+    PassTimes times;
+    const auto measure = [&](double PassTimes::*pass, auto enqueue) {
+        device_.finish();
+        const support::Stopwatch stopwatch;
+        enqueue();
+        device_.finish();
+        times.*pass = stopwatch.ms();
+    };
+    measure(&PassTimes::transform_ms, [&] { transform(); });
+    do {
+        measure(&PassTimes::raster_insert_ms, [&] { store(); });
+        measure(&PassTimes::sort_blend_ms, [&] { resolve(); });
+    } while (!complete());
+    return times;
+}
+
+}  // namespace oit

@@ -1,0 +1,353 @@
+#include "report/choice_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "report/number_text.hpp"
+
+namespace oit {
+namespace {
+
+using Fate = Candidate::Fate;
+
+std::string percent(double part) {
+    return fixed(100 * part, 100 * part < 1 && part > 0 ? 3 : 1) + " %";
+}
+
+// Without what is the same for all.
+std::string short_text(const Setting& setting) {
+    Setting alone = setting;
+    const Quality usual;
+    alone.quality.samples = usual.samples;
+    alone.quality.resolve = usual.resolve;
+    alone.quality.depth_range = usual.depth_range;
+    alone.quality.depth_scale = usual.depth_scale;
+    return text(alone);
+}
+
+// Half of the pixels that have layers have no more than this.
+std::uint64_t median_layers(const SceneMeasure& scene) {
+    std::uint64_t seen = 0;
+    for (std::size_t bin = 1; bin < scene.pixels_by_layers.size(); ++bin) {
+        seen += scene.pixels_by_layers[bin];
+        if (2 * seen >= scene.nonempty_pixels) return std::min((1UL << bin) - 1, scene.longest);
+    }
+    return scene.longest;
+}
+
+std::string layers_text(const SceneMeasure& scene) {
+    if (scene.fragments == 0) return "nothing transparent is to be seen";
+    return counted(scene.fragments, "fragment") + " in " +
+           percent(static_cast<double>(scene.nonempty_pixels) / static_cast<double>(scene.pixels)) +
+           " of the pixels, half of these with " + counted(median_layers(scene), "layer") +
+           " at most, the deepest with " + grouped(scene.longest);
+}
+
+std::string light_text(const SceneMeasure& scene) {
+    std::string text;
+    for (const SceneMeasure::Cut& cut : scene.cuts)
+        if (cut.layers >= 2 && cut.layers < scene.longest)
+            text += (text.empty() ? "" : ", ") + percent(cut.light_behind) + " behind " +
+                    std::to_string(cut.layers) + (text.empty() ? " layers" : "");
+    return text.empty() ? "" : "in any pixel at most " + text;
+}
+
+std::string untold_text(const SceneMeasure& scene) {
+    const auto& [of_float, of_24, of_16] = scene.pixels_untold;
+    if (of_float + of_24 + of_16 == 0) return "told in all pixels, by depths of 16 bits already";
+    return "not told in " + counted(of_float, "pixel") + " by depths of float, in " +
+           grouped(of_24) + " by 24 bits, in " + grouped(of_16) + " by 16 bits";
+}
+
+std::string reason(const Candidate& candidate) {
+    switch (candidate.fate) {
+        case Fate::chosen:
+            return "chosen";
+        case Fate::over_budget:
+            return "over the budget";
+        case Fate::as_fast:
+            return "as fast, not as plain";
+        case Fate::slower:
+            return candidate.fastest_ms ? "slower" : "expected to be slower, not drawn";
+        case Fate::not_needed:
+            return "not needed";
+        case Fate::failed:
+            return "failed";
+        case Fate::not_reached:
+            return "not reached in time";
+    }
+    return {};
+}
+
+const char* basis(bool bounded) {
+    return bounded ? "by its bound"
+                   : "compared with all layers in float, that picture's own "
+                     "error included";
+}
+
+// "41.3 dB at least" or "0.71/255 at most".
+std::string limit_text(const PictureError& error, const Budget& budget) {
+    return budget.text_of(error) + (budget.kind == Budget::Kind::psnr ? " at least" : " at most");
+}
+
+std::string other_order_text(const Choice& choice, const Budget& budget) {
+    const bool counts = budget.strict, is_psnr = budget.kind == Budget::Kind::psnr;
+    return "in " + counted(choice.scene.pixels_untold[0], "undecided pixel") +
+           " float does not tell the order of layers: " +
+           (counts ? "apart from these, " : "with the other order there, ") +
+           limit_text(counts ? choice.errors.told : choice.errors.all, budget) +
+           (counts || is_psnr || choice.errors.undecided_pixels == 0
+                ? ""
+                : ", over " + budget.text() + " in " + grouped(choice.errors.undecided_pixels));
+}
+
+// Where all layers in float were chosen, there is nothing to compare.
+std::string speed_text(const Choice& choice) {
+    const bool is_exact = text(choice.setting) == text(exact_setting(choice.setting.quality));
+    if (!choice.met || !choice.exact_times || is_exact) return {};
+    return "all layers in float take " + fixed(*choice.exact_times, 2) + " times as long";
+}
+
+// "12.1 to 13.4 ms"
+std::string quartiles_text(const Spread& times) {
+    return fixed(times.lower_quartile_ms, 2) + " to " + fixed(times.upper_quartile_ms, 2) + " ms";
+}
+
+std::string chosen_text(const Choice& choice) {
+    return short_text(choice.setting) + ": " + fixed(choice.times.median_ms, 2) + " ms (half of " +
+           counted(choice.turns, "frame") + " in " + quartiles_text(choice.times) + ")";
+}
+
+// Why this setting was chosen, where times alone do not decide.
+std::string plainest_text(const Choice& choice) {
+    const std::uint64_t others = choice.count(Fate::as_fast);
+    if (others == 0) return {};
+    return "times do not tell " +
+           std::string(others == 1 ? "one other setting" : grouped(others) + " other settings") +
+           " from the fastest: the plainest is chosen";
+}
+
+std::string search_text(const Choice& choice) {
+    std::string text = counted(choice.candidates.size(), "setting") + ", " +
+                       counted(choice.draws, "frame") + ", " + fixed(choice.took_ms / 1000, 1) +
+                       " s";
+    if (const std::uint64_t left = choice.count(Fate::not_reached); left > 0)
+        text +=
+            "; the time was over before " + counted(left, "setting") + ": raise --search-seconds";
+    return text;
+}
+
+// ---- the settings that were not chosen
+
+std::vector<const Candidate*> others_of(const Choice& choice) {
+    std::vector<const Candidate*> others;
+    for (const Candidate& candidate : choice.candidates)
+        if (text(candidate.setting) != text(choice.setting)) others.push_back(&candidate);
+    return others;
+}
+
+// A few: what is over the budget though faster, and what comes next.
+std::vector<const Candidate*> shown_of(const std::vector<const Candidate*>& others) {
+    constexpr std::size_t most = 4;
+    std::vector<const Candidate*> over, slower;
+    for (const Candidate* other : others) {
+        const bool keeps = other->fate == Fate::as_fast || other->fate == Fate::slower;
+        if (other->fate == Fate::over_budget && other->error && over.size() < most)
+            over.push_back(other);
+        else if (keeps && other->fastest_ms && slower.size() < most)
+            slower.push_back(other);
+    }
+    over.insert(over.end(), slower.begin(), slower.end());
+    return over;
+}
+
+std::string times_text(const Candidate& candidate) {
+    if (candidate.times_chosen) return fixed(*candidate.times_chosen, 2) + " times";
+    return candidate.times_leader ? "about " + fixed(*candidate.times_leader, 2) + " times" : "-";
+}
+
+// "12 not needed; 31 slower"
+std::string fates_text(const std::vector<const Candidate*>& candidates) {
+    std::vector<std::pair<std::string, int>> counts;
+    for (const Candidate* candidate : candidates) {
+        const std::string why = reason(*candidate);
+        const auto at = std::ranges::find(counts, why, &std::pair<std::string, int>::first);
+        if (at != counts.end())
+            ++at->second;
+        else
+            counts.emplace_back(why, 1);
+    }
+    std::string result;
+    for (const auto& [why, count] : counts)
+        result += (result.empty() ? "" : "; ") + std::to_string(count) + " " + why;
+    return result;
+}
+
+void print_others(const Choice& choice, const Budget& budget, std::ostream& out) {
+    std::vector<const Candidate*> others = others_of(choice);
+    const std::vector<const Candidate*> shown = shown_of(others);
+    for (const Candidate* other : shown)
+        out << "    " << std::left << std::setw(42) << short_text(other->setting) << std::right
+            << std::setw(17) << times_text(*other) << std::setw(12)
+            << (other->error ? budget.text_of(*other->error) : "-") << "  " << reason(*other)
+            << (other->times ? " (" + quartiles_text(*other->times) + ")" : "") << '\n';
+    std::erase_if(others, [&](const Candidate* other) {
+        return std::ranges::find(shown, other) != shown.end();
+    });
+    if (!others.empty())
+        out << "    ... and " << others.size() << " more: " << fates_text(others)
+            << " (--json FILE has all)\n";
+}
+
+// ---- how the budget was kept
+
+std::string kept_text(const Budget& budget, const KeptBudget& kept) {
+    const std::string worst = limit_text(budget.counted(kept.worst()), budget);
+    return grouped(kept.checked()) + " of " + counted(kept.frames(), "frame") + " checked, " +
+           grouped(kept.chosen_again()) + " chosen again, " + grouped(kept.over().size()) +
+           " over the budget; the worst " +
+           (budget.kind == Budget::Kind::psnr ? "has " : "is off by ") + worst;
+}
+
+// Whether it is for the setting, or for what can be proven of any.
+std::string not_met_reason(const Choice& choice, const Budget& budget) {
+    if (choice.met || budget.met_by(choice.scene.exact))
+        return budget.strict && budget.met_by(choice.errors.told)
+                   ? "--strict counts " + counted(choice.errors.undecided_pixels, "undecided pixel")
+                   : "no setting meets the budget";
+    return (budget.kind == Budget::Kind::psnr ? "no more than " : "no less than ") +
+           budget.text_of(choice.scene.exact) +
+           " can be proven of any picture of this frame, for floats are rounded; "
+           "the picture may be better";
+}
+
+std::string not_met_text(const Choice& choice, const Budget& budget, const KeptBudget& kept) {
+    std::string text = not_met_reason(choice, budget);
+    if (kept.over().size() < kept.frames())
+        text += "; over it in " + counted(kept.over().size(), "frame") + ", first in frame " +
+                grouped(kept.first_over()) + " of " + grouped(kept.frames());
+    return text;
+}
+
+nlohmann::ordered_json json_of(const PictureError& error) {
+    nlohmann::ordered_json json{{"largest", error.largest}, {"psnr_db", nullptr}};
+    if (std::isfinite(error.psnr_db())) json["psnr_db"] = error.psnr_db();
+    return json;
+}
+
+nlohmann::ordered_json json_of(const Spread& times) {
+    return {{"ms", times.median_ms},
+            {"fastest_ms", times.least_ms},
+            {"lower_quartile_ms", times.lower_quartile_ms},
+            {"upper_quartile_ms", times.upper_quartile_ms}};
+}
+
+}  // namespace
+
+void KeptBudget::add(const Keeper::Drawn& drawn, double time, const Budget& budget) {
+    ++frames_;
+    if (drawn.changed) ++changed_;
+    if (drawn.checked) ++checked_;
+    if (drawn.chosen_again) ++chosen_again_;
+    if (!drawn.errors) return;
+    if (!budget.met_by(*drawn.errors)) {
+        if (over_.empty()) first_over_ = frames_;
+        over_.push_back(time);
+    } else if (!budget.met_by(drawn.errors->all)) {
+        undecided_pixels_ = std::max(undecided_pixels_, drawn.errors->undecided_pixels);
+    }
+    if (budget.better(budget.counted(worst_), budget.counted(*drawn.errors)))
+        worst_ = *drawn.errors;
+}
+
+std::string KeptBudget::verdict() const {
+    if (!met()) return "not met";
+    if (undecided_pixels_ == 0) return "met";
+    return "met except " + counted(undecided_pixels_, "undecided pixel");
+}
+
+void print(const Choice& choice, const Budget& budget, const KeptBudget& kept, std::ostream& out) {
+    const auto line = [&out](const std::string& name, const std::string& what) {
+        if (!what.empty())
+            out << "  " << std::left << std::setw(18) << name << std::right << what << '\n';
+    };
+    const SceneMeasure& scene = choice.scene;
+    const bool is_psnr = budget.kind == Budget::Kind::psnr;
+    line("budget", (is_psnr ? "PSNR of at least " : "errors of at most ") + budget.text() +
+                       (budget.strict ? ", strict: " : ": ") + kept.verdict());
+    line("layers", layers_text(scene));
+    if (scene.fragments > 0) {
+        line("opacity", fixed(static_cast<double>(scene.least_alpha), 3) + " to " +
+                            fixed(static_cast<double>(scene.greatest_alpha), 3));
+        line("light that passes", light_text(scene));
+        line("order of layers", untold_text(scene));
+    }
+    line(choice.met ? "chosen" : "best there is", chosen_text(choice));
+    line("", plainest_text(choice));
+    line("error", limit_text(budget.counted(choice.errors), budget) + ", " + basis(choice.bounded));
+    if (scene.pixels_untold[0] > 0) line("", other_order_text(choice, budget));
+    line("speed", speed_text(choice));
+    line("search", search_text(choice));
+    line("others", std::string(choice.met ? "time against the chosen one, and " : "") +
+                       (is_psnr ? "PSNR at least" : "error at most"));
+    print_others(choice, budget, out);
+    if (kept.changed() > 0) line("kept", kept_text(budget, kept));
+    if (!kept.met()) line("NOT MET", not_met_text(choice, budget, kept));
+}
+
+nlohmann::ordered_json json_of(const Choice& choice, const Budget& budget, const KeptBudget& kept) {
+    constexpr const char* fates[] = {"chosen",     "over budget", "as fast",    "slower",
+                                     "not needed", "failed",      "not reached"};
+    nlohmann::ordered_json json;
+    json["budget"] = budget.text();
+    json["strict"] = budget.strict;
+    json["met"] = kept.met();
+    json["verdict"] = kept.verdict();
+    json["undecided_pixels"] = kept.undecided_pixels();
+    json["setting"] = text(choice.setting);
+    json["error"] = json_of(choice.errors.told);
+    json["error_with_any_order"] = json_of(choice.errors.all);
+    json["bounded"] = choice.bounded;
+    json.update(json_of(choice.times));
+    json["turns"] = choice.turns;
+    json["exact_times"] = nullptr;
+    if (choice.exact_times) json["exact_times"] = *choice.exact_times;
+    json["draws"] = choice.draws;
+    json["took_ms"] = choice.took_ms;
+    json["not_reached"] = choice.count(Fate::not_reached);
+    json["scene"] = {{"pixels", choice.scene.pixels},
+                     {"fragments", choice.scene.fragments},
+                     {"nonempty_pixels", choice.scene.nonempty_pixels},
+                     {"longest", choice.scene.longest},
+                     {"pixels_by_layers", choice.scene.pixels_by_layers},
+                     {"least_alpha", choice.scene.least_alpha},
+                     {"greatest_alpha", choice.scene.greatest_alpha},
+                     {"pixels_untold", choice.scene.pixels_untold},
+                     {"exact", json_of(choice.scene.exact)}};
+    json["candidates"] = nlohmann::ordered_json::array();
+    for (const Candidate& candidate : choice.candidates) {
+        nlohmann::ordered_json entry{{"setting", text(candidate.setting)},
+                                     {"fate", fates[static_cast<int>(candidate.fate)]}};
+        if (candidate.error) entry["error"] = json_of(*candidate.error);
+        if (candidate.fastest_ms) entry["fastest_ms"] = *candidate.fastest_ms;
+        if (candidate.times_leader) entry["times_leader"] = *candidate.times_leader;
+        if (candidate.times) entry.update(json_of(*candidate.times));
+        if (candidate.times_chosen) entry["times_chosen"] = *candidate.times_chosen;
+        if (!candidate.failure.empty()) entry["failure"] = candidate.failure;
+        json["candidates"].push_back(entry);
+    }
+    json["frames"] = {
+        {"drawn", kept.frames()},    {"changed", kept.changed()},
+        {"checked", kept.checked()}, {"chosen_again", kept.chosen_again()},
+        {"over_at", kept.over()},    {"worst", json_of(budget.counted(kept.worst()))}};
+    return json;
+}
+
+}  // namespace oit

@@ -1,0 +1,61 @@
+#include "report/picture.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "image.hpp"
+
+namespace oit {
+
+std::vector<cl_float4> side_by_side(const std::vector<cl_float4>& image, const Frame& frame) {
+    const auto width = static_cast<std::size_t>(frame.width());
+    const auto height = static_cast<std::size_t>(frame.height());
+    std::vector<cl_float4> rows;
+    rows.reserve(image.size());
+    for (std::size_t y = 0; y < height; ++y)
+        for (std::size_t eye = 0; eye < frame.views.size(); ++eye) {
+            const auto row =
+                image.begin() + static_cast<std::ptrdiff_t>((eye * height + y) * width);
+            rows.insert(rows.end(), row, row + static_cast<std::ptrdiff_t>(width));
+        }
+    return rows;
+}
+
+std::vector<cl_float4> linear_image(const Reference& reference) {
+    std::vector<cl_float4> image;
+    image.reserve(reference.image.size());
+    for (const glm::dvec3& colour : reference.image)
+        image.push_back({{static_cast<float>(colour.x), static_cast<float>(colour.y),
+                          static_cast<float>(colour.z), 1.0F}});
+    return image;
+}
+
+std::vector<cl_float4> linear_difference(std::span<const cl_float4> a,
+                                         std::span<const cl_float4> b) {
+    std::vector<cl_float4> result(a.size());
+    for (std::size_t p = 0; p < a.size(); ++p)
+        for (int c = 0; c < 3; ++c) result[p].s[c] = std::abs(a[p].s[c] - b[p].s[c]);
+    return result;
+}
+
+std::vector<std::uint8_t> shown_difference(std::span<const cl_float4> a,
+                                           std::span<const cl_float4> b) {
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(3 * a.size());
+    for (std::size_t p = 0; p < a.size(); ++p)
+        for (int c = 0; c < 3; ++c) {
+            const double error =
+                std::abs(support::srgb_from_linear(static_cast<double>(a[p].s[c])) -
+                         support::srgb_from_linear(static_cast<double>(b[p].s[c])));
+            bytes.push_back(static_cast<std::uint8_t>(
+                std::lround(255 * std::min(1.0, difference_factor * error))));
+        }
+    return bytes;
+}
+
+int picture_width(const Frame& frame) {
+    return frame.width() * static_cast<int>(frame.views.size());
+}
+
+}  // namespace oit

@@ -1,0 +1,32 @@
+#include "scene/scenes.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace oit {
+namespace {
+
+std::vector<SceneInfo>& table() {
+    static std::vector<SceneInfo> scenes;
+    return scenes;
+}
+
+}  // namespace
+
+SceneRegistration::SceneRegistration(const SceneInfo& info) {
+    std::vector<SceneInfo>& scenes = table();
+    const auto behind = std::find_if(scenes.begin(), scenes.end(), [&](const SceneInfo& other) {
+        return other.name > info.name;
+    });
+    scenes.insert(behind, info);
+}
+
+std::span<const SceneInfo> scenes() { return table(); }
+
+const SceneInfo* find_scene(std::string_view name) {
+    for (const SceneInfo& info : table())
+        if (info.name == name) return &info;
+    return nullptr;
+}
+
+}  // namespace oit
