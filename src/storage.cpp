@@ -17,8 +17,7 @@ namespace {
 
 /// Four blocks a shard at least: more shards in a small pool only make the search for the last free
 /// nodes longer.
-cl_uint shard_bits_for(std::uint64_t capacity_nodes, Allocation allocation) {
-    if (allocation == Allocation::global) return 0;
+cl_uint shard_bits_for(std::uint64_t capacity_nodes) {
     cl_uint bits = 0;
     while (bits < CELLIST_SHARD_BITS_MAX &&
            (std::uint64_t{4} * CELLIST_BLOCK_NODES << (bits + 1)) <= capacity_nodes)
@@ -84,7 +83,6 @@ cellist_view ListStorage::view() const {
             slots_,
             static_cast<cl_uint>(slice_.first_cell),
             open_ ? static_cast<cl_uint>(slice_.cells) : 0,
-            open_ && reserves_ ? 1u : 0u,
             rank_member_,
             rank_words_,
             hands_with(capacity_nodes_),
@@ -108,7 +106,7 @@ std::uint64_t ListStorage::pool_nodes_with(std::uint64_t capacity_nodes) const {
 
 std::uint64_t ListStorage::counters_with(std::uint64_t capacity_nodes) const {
     const cl_uint hands = hands_with(capacity_nodes);
-    return (std::uint64_t{1} << shard_bits_for(capacity_nodes, options_.allocation)) + 1 + hands +
+    return (std::uint64_t{1} << shard_bits_for(capacity_nodes)) + 1 + hands +
            elements_of_owners(hands);
 }
 
@@ -188,7 +186,7 @@ void ListStorage::allocate_pool(std::uint64_t capacity_nodes) {
     capacity_nodes_ = 0;
     nodes_ = Memory();
     spare_.reset();
-    const cl_uint bits = shard_bits_for(capacity_nodes, options_.allocation);
+    const cl_uint bits = shard_bits_for(capacity_nodes);
     shards_ = Memory(device_, counters_with(capacity_nodes), sizeof(cellist_shard), "counters");
     shard_bits_ = bits;
     nodes_ = Memory(device_, pool_nodes_with(capacity_nodes), node_bytes_, "pool");
@@ -216,8 +214,6 @@ ListStorage::Counters ListStorage::sum(const Shards& shards, cl_uint hands) {
         sum.dropped += wide(shard.dropped_low, shard.dropped_high);
         sum.rejected += wide(shard.rejected_low, shard.rejected_high);
         sum.late += wide(shard.late_low, shard.late_high);
-        sum.open_reservations += shard.open_reservations;
-        sum.missing += wide(shard.missing_low, shard.missing_high);
     }
     for (const cellist_shard& element : std::span(shards).subspan(count, hands)) {
         const auto hand = std::bit_cast<cellist_hand>(element);

@@ -122,8 +122,6 @@ protected:
         std::uint64_t dropped = 0;
         std::uint64_t rejected = 0;
         std::uint64_t late = 0;
-        std::uint64_t open_reservations = 0;  ///< that hold nodes
-        std::uint64_t missing = 0;  ///< nodes that reservations lack and no link asked for
     };
     using Shards = std::vector<cellist_shard>;
 
@@ -217,7 +215,6 @@ protected:
     std::shared_ptr<Expected> expected_ = std::make_shared<Expected>();  ///< of the last build
     cl_uint shard_bits_ = 0;
     cl_uint slots_ = 0;
-    bool reserves_ = false;  ///< reservations take their nodes at once
     cl_uint rank_member_ = 0;
     cl_uint rank_words_ = 0;
     std::uint32_t growths_ = 0;  ///< of this build

@@ -22,16 +22,13 @@ LinkedStorage::LinkedStorage(std::shared_ptr<DeviceState> device, const Definiti
         options.capacity_nodes.value_or(std::max(shape.cells(), default_capacity_nodes));
     if (!options.capacity_nodes && refusal(capacity)) capacity = 0;
     if (const auto reason = refusal(capacity)) throw Error(*reason);
-    set_slice(slice_);
     allocate_pool(capacity);
     clear();
 }
 
 /// Where the pool does not grow it holds exactly what the options say: no thread may have free nodes for itself.
 cl_uint LinkedStorage::hands_with(std::uint64_t capacity_nodes) const {
-    if (!device_->info.threads || options_.overflow != Overflow::grow ||
-        options_.allocation != Allocation::sharded)
-        return 0;
+    if (!device_->info.threads || options_.overflow != Overflow::grow) return 0;
     const cl_uint hands = hands_of(device_->info);
     const std::uint64_t nodes = std::uint64_t{hands} * CELLIST_BLOCK_NODES;
     if (hands_part * nodes > capacity_nodes || capacity_nodes > CELLIST_CAPACITY_NODES_MAX - nodes)
@@ -57,30 +54,13 @@ bool LinkedStorage::finish_pass() {
 
 bool LinkedStorage::review_pass(BuildReport& report) {
     const Counters counters = sum(counters_, hands_with(capacity_nodes_));
-    const std::uint64_t unlinked = counters.open_reservations == 0 ? 0 : count_unlinked();
-    update(report, counters, counters.allocated - unlinked);
+    update(report, counters, counters.allocated);
     if (counters.dropped == 0 || options_.overflow == Overflow::drop) return true;
 
-    const std::uint64_t demand = counters.allocated + counters.dropped + counters.missing;
+    const std::uint64_t demand = counters.allocated + counters.dropped;
     require(demand, report);
     grow_pool(demand, report);
     return false;
-}
-
-/// Nodes that reservations hold and no link has taken. Blocks.
-std::uint64_t LinkedStorage::count_unlinked() {
-    constexpr cl_uint zero = 0;
-    Memory memory(device_, 1, sizeof zero, "count of nodes");
-    memory.fill(&zero, sizeof zero, sizeof zero);
-    if (!unlinked_kernel_)
-        unlinked_kernel_.emplace(kernel("cellist_unlinked", kernels::unlinked_cl, mode_));
-    Arguments arguments;
-    add_to(arguments);
-    arguments.add(memory.cl());
-    unlinked_kernel_->enqueue(Range::padded(pool_nodes()), arguments);
-    cl_uint count = 0;
-    memory.read(&count, sizeof count);
-    return count;
 }
 
 void LinkedStorage::make_whole(bool without_pool) {
@@ -91,14 +71,7 @@ std::uint64_t LinkedStorage::nodes_for(std::uint64_t total, std::uint64_t, std::
     return total;
 }
 
-void LinkedStorage::set_slice(const Slice& slice) {
-    ListStorage::set_slice(slice);
-    reserves_ = options_.allocation == Allocation::reserved;
-}
-
-/// The pool has room for no more than the records of the slice, so reservations take no nodes.
 void LinkedStorage::reserve(std::uint64_t total, std::uint64_t) {
-    reserves_ = false;
     if (options_.overflow == Overflow::grow && capacity_nodes_ < total) make_pool(total);
 }
 
@@ -125,7 +98,6 @@ std::function<Validation()> LinkedStorage::validate() {
     return [check, expected = expected_, hands = hands_with(capacity_nodes_)] {
         check->done.wait();
         const cellist_findings& found = check->findings.found;
-        // A list that leads to an unlinked node is broken there, with that node counted in.
         return Validation{found.broken, found.repeated,
                           expected->stored - std::min<std::uint64_t>(expected->stored, found.nodes),
                           sum(check->shards, hands).late, bad_cell(found)};

@@ -15,7 +15,6 @@ public:
                   const Shape& shape, const ListsOptions& options);
     void clear() override;
     std::function<Validation()> validate() override;
-    void set_slice(const Slice& slice) override;
     std::uint64_t nodes_for(std::uint64_t total, std::uint64_t longest,
                             std::uint64_t cells) const override;
     void reserve(std::uint64_t total, std::uint64_t longest) override;
@@ -26,9 +25,6 @@ private:
     void make_whole(bool without_pool) override;
     [[nodiscard]] cl_uint hands_with(std::uint64_t capacity_nodes) const override;
 
-    [[nodiscard]] std::uint64_t count_unlinked();
-
-    std::optional<Kernel> unlinked_kernel_;
     std::optional<Kernel> validate_;
 };
 

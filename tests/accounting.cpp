@@ -192,7 +192,6 @@ TEST_CASE("every record of random builds is stored, dropped or rejected", "[acco
         ListsOptions options;
         options.storage = all_storages[below(random, 3)];
         options.overflow = policies[below(random, 3)];
-        options.allocation = below(random, 4) == 0 ? Allocation::global : Allocation::sharded;
         const Expected exact = expect(demands, options);
         options.capacity_nodes = random_room(exact.demand, random);
         options.slots = static_cast<std::uint32_t>(random_room(exact.longest, random));

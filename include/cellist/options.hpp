@@ -36,14 +36,6 @@ enum class Storage {
     automatic,
 };
 
-/// How kernels get nodes from the pool of Storage::linked.
-enum class Allocation {
-    sharded,   ///< up to 256 counters, probed in turn when one runs out
-    global,    ///< one counter; slower wherever many work-items insert, for comparison
-    reserved,  ///< sharded, and cellist_reserve takes its nodes at once; slower on all devices
-               ///< measured but where all records go to one cell of a CPU
-};
-
 struct ListsOptions {
     Storage storage = Storage::linked;
     Overflow overflow = Overflow::grow;
@@ -58,7 +50,6 @@ struct ListsOptions {
     /// Device memory that heads, nodes and counters may take together, and what sorts and builds keep
     /// of any length. The fixed state of a sort, some 60 bytes, comes on top.
     std::uint64_t budget_bytes = std::numeric_limits<std::uint64_t>::max();
-    Allocation allocation = Allocation::sharded;
     /// For Storage::automatic: how often kernels walk all lists after each build.
     std::uint32_t expected_reads = 1;
 };

@@ -19,15 +19,9 @@
 // No node, no cell. Also the end of a list.
 #define CELLIST_NONE 0xFFFFFFFFu
 
-// The link of a node that a reservation holds. No address of a node.
-#define CELLIST_UNLINKED 0xFFFFFFFEu
-
-// Nodes that a reservation takes at once, at most; a power of two.
-#define CELLIST_RESERVE_MAX 256u
-
 // Largest capacity. It leaves room between the capacity and 2^32 for what the work-items that are
-// inside an allocation at one moment ask for, CELLIST_RESERVE_MAX each: a counter runs past its last
-// node by as many, and comes back.
+// inside an allocation at one moment ask for, CELLIST_BLOCK_NODES each at most: a counter runs past its
+// last node by as many, and comes back.
 #define CELLIST_CAPACITY_NODES_MAX 0xC0000000u
 
 // Inserts that are counted for one cell; more of them are counted as dropped.
@@ -85,7 +79,6 @@ typedef struct cellist_view {
     CELLIST_UINT slots;           // nodes of each cell in mode FIXED
     CELLIST_UINT first_cell;      // of the cells that have lists now: 0 but in a build in slices
     CELLIST_UINT open_cells;      // cells from the first on that take inserts: 0 outside of a build
-    CELLIST_UINT reserves;        // not 0: a reservation takes its nodes at once
     CELLIST_UINT rank_member;     // of the record, that it is ranked by
     CELLIST_UINT rank_words;      // words of the key that have thresholds
     CELLIST_UINT hands;           // of threads: 0, or a power of two from 8 on
@@ -103,11 +96,8 @@ typedef struct cellist_shard {
     CELLIST_UINT pool_full;  // behind the last shard: not 0 once every shard was seen full
     CELLIST_UINT late_low;   // only after the last shard: inserts outside a build, in two words
     CELLIST_UINT late_high;
-    CELLIST_UINT open_reservations;  // that hold nodes which no link has taken
-    CELLIST_UINT missing_low;        // nodes that reservations lack, 64 bits in two words
-    CELLIST_UINT missing_high;
     CELLIST_UINT passed;  // when this shard was full, so many were seen full from it on
-    CELLIST_UINT padding[4];
+    CELLIST_UINT padding[7];
 } cellist_shard;
 
 // Nodes that a thread has for itself, alone in its cache line: those at the addresses node ... last - 1,

@@ -11,21 +11,6 @@ namespace cellist::test {
 
 inline constexpr std::array all_storages{Storage::linked, Storage::counted, Storage::fixed};
 
-inline constexpr std::array all_allocations{Allocation::sharded, Allocation::global,
-                                            Allocation::reserved};
-
-constexpr std::string_view name_of(Allocation allocation) {
-    switch (allocation) {
-        case Allocation::sharded:
-            return "sharded";
-        case Allocation::global:
-            return "global";
-        case Allocation::reserved:
-            return "reserved";
-    }
-    return "unknown";
-}
-
 constexpr std::string_view name_of(Storage storage) {
     switch (storage) {
         case Storage::linked:
