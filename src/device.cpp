@@ -81,9 +81,10 @@ DeviceInfo describe(const cl::Device& device) {
     info.sub_groups = has("cl_khr_subgroups") || has("cl_intel_subgroups");
     info.fp64 = device.getInfo<CL_DEVICE_DOUBLE_FP_CONFIG>() != 0;
     if (has("cl_nv_device_attribute_query"))
-        info.lanes = device.getInfo<CL_DEVICE_COMPUTE_CAPABILITY_MAJOR_NV>() >= 7;
-    info.threads = knows_threads && info.platform == "Portable Computing Language" &&
-                   info.type == CL_DEVICE_TYPE_CPU && info.int64_atomics;
+        info.warp_aggregation = device.getInfo<CL_DEVICE_COMPUTE_CAPABILITY_MAJOR_NV>() >= 7;
+    info.one_thread_per_work_group = knows_threads &&
+                                     info.platform == "Portable Computing Language" &&
+                                     info.type == CL_DEVICE_TYPE_CPU && info.int64_atomics;
     return info;
 }
 

@@ -50,8 +50,8 @@ ProgramText whole_source(const Source& source, const detail::Definitions& defini
     }
     whole.add(hide, "options");
     whole.add("#define CELLIST_MODES " + std::to_string(modes) + "u", "modes");
-    add_switch(whole, "LANES", device.lanes);
-    add_switch(whole, "THREADS", device.threads);
+    add_switch(whole, "LANES", device.warp_aggregation);
+    add_switch(whole, "THREADS", device.one_thread_per_work_group);
     whole.add(kernels::view_h, "cellist/view.h");
     whole.add(kernels::lanes_clh, "cellist/lanes.clh");
     whole.add(kernels::threads_clh, "cellist/threads.clh");

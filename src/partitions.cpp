@@ -33,7 +33,7 @@ std::uint64_t Partitions::Plan::bytes() const {
 
 std::optional<Partitions::Plan> Partitions::plan(const DeviceInfo& device, std::size_t node_bytes,
                                                  std::uint64_t cells, std::uint64_t records) {
-    if (!device.threads) return {};
+    if (!device.one_thread_per_work_group) return {};
     Plan plan{.records = records + records / growth_part, .node_bytes = node_bytes};
     const std::uint64_t threads = std::max(device.compute_units, 1U);
     const std::uint64_t unfilled = threads * CELLIST_BLOCK_NODES;

@@ -28,7 +28,7 @@ LinkedStorage::LinkedStorage(std::shared_ptr<DeviceState> device, const Definiti
 
 /// Where the pool does not grow it holds exactly what the options say: no thread may have free nodes for itself.
 cl_uint LinkedStorage::hands_with(std::uint64_t capacity_nodes) const {
-    if (!device_->info.threads || options_.overflow != Overflow::grow) return 0;
+    if (!device_->info.one_thread_per_work_group || options_.overflow != Overflow::grow) return 0;
     const cl_uint hands = hands_of(device_->info);
     const std::uint64_t nodes = std::uint64_t{hands} * CELLIST_BLOCK_NODES;
     if (hands_part * nodes > capacity_nodes || capacity_nodes > CELLIST_CAPACITY_NODES_MAX - nodes)

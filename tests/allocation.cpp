@@ -213,7 +213,7 @@ kernel void steal(CELLIST_LISTS(Item, lists), global uint* found)
                  "steal", lists);
     Buffer<cl_uint> found(device(), 1);
     steal.run(1, lists, found);
-    if (!device().info().threads) {
+    if (!device().info().one_thread_per_work_group) {
         REQUIRE(found.download()[0] == 0);
         return;
     }

@@ -30,9 +30,10 @@ struct DeviceInfo {
     bool int64_atomics = false;
     bool sub_groups = false;
     bool fp64 = false;
-    bool lanes = false;  ///< warps whose lanes can exchange values: NVIDIA, compute capability 7.0
-    bool threads =
-        false;  ///< a work-group runs on one thread: PoCL on x86-64 and AArch64 processors
+    /// The work-items of a warp can exchange values: NVIDIA, compute capability 7.0 or later.
+    bool warp_aggregation = false;
+    /// A work-group runs on one thread: PoCL on x86-64 and AArch64 processors.
+    bool one_thread_per_work_group = false;
 };
 
 /// An OpenCL device with a context, a queue and a cache of built programs. Everything that is made
