@@ -68,7 +68,7 @@ inline std::uint64_t wide(cl_uint low, cl_uint high) { return (std::uint64_t{hig
 
 /// Places for the threads of a device that has some (threads.clh): twice as many, so that a table of them is
 /// never crowded; a power of two.
-inline cl_uint hands_of(const DeviceInfo& device) {
+inline cl_uint thread_slots_of(const DeviceInfo& device) {
     return std::bit_ceil(std::max(2 * device.compute_units, 8U));
 }
 

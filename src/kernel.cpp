@@ -50,12 +50,16 @@ ProgramText whole_source(const Source& source, const detail::Definitions& defini
     }
     whole.add(hide, "options");
     whole.add("#define CELLIST_MODES " + std::to_string(modes) + "u", "modes");
-    add_switch(whole, "LANES", device.warp_aggregation);
-    add_switch(whole, "THREADS", device.one_thread_per_work_group);
+    add_switch(whole, "WARP_AGGREGATION", device.warp_aggregation);
+    add_switch(whole, "ONE_THREAD_PER_WORK_GROUP", device.one_thread_per_work_group);
     whole.add(kernels::view_h, "cellist/view.h");
-    whole.add(kernels::lanes_clh, "cellist/lanes.clh");
+    whole.add(kernels::warp_clh, "cellist/warp.clh");
     whole.add(kernels::threads_clh, "cellist/threads.clh");
     whole.add(kernels::allocation_clh, "cellist/allocation.clh");
+    whole.add(kernels::linked_clh, "cellist/linked.clh");
+    whole.add(kernels::counted_clh, "cellist/counted.clh");
+    whole.add(kernels::fixed_clh, "cellist/fixed.clh");
+    whole.add(kernels::nearest_clh, "cellist/nearest.clh");
     whole.add(kernels::lists_clh, "cellist/lists.clh");
     whole.add(all.source(), structs);
     whole.add(show, "options");

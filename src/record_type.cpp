@@ -103,8 +103,8 @@ std::string order_definition(const RecordType& record) {
            define("global const struct " + record.name + "*", "->");
 }
 
-/// The words by which a record is ranked, and their number: those of a member, then those of all.
-std::string rank_definition(const RecordType& record) {
+/// The words of a record's key for nearest.clh, and their number: those of a member, then those of all.
+std::string words_definition(const RecordType& record) {
     std::string members = "    switch (member) {\n";
     std::string lengths = members;
     const auto word_of = [](const std::string& path) {
@@ -125,7 +125,7 @@ std::string rank_definition(const RecordType& record) {
     members += "    default: break;\n    }\n";
     lengths += "    default: break;\n    }\n";
     for (std::size_t i = 0; i < record.members.size(); ++i) {
-        // The member itself is not ranked again.
+        // The member itself is not compared again.
         const RecordMember& member = record.members[i];
         const std::string other = "    if (member != " + std::to_string(i) + ") {\n";
         if (member.is_scalar) members += other, lengths += other;
@@ -135,9 +135,9 @@ std::string rank_definition(const RecordType& record) {
         }
         if (member.is_scalar) members += "    }\n", lengths += "    }\n";
     }
-    return "static inline uint CELLIST_OVERLOAD cellist_rank_word(struct " + record.name +
+    return "static inline uint CELLIST_OVERLOAD cellist_record_word(struct " + record.name +
            " record, uint member, uint word)\n{\n" + members + "    return 0;\n}\n" +
-           "static inline uint CELLIST_OVERLOAD cellist_rank_length(struct " + record.name +
+           "static inline uint CELLIST_OVERLOAD cellist_record_words(struct " + record.name +
            "* record, uint member)\n{\n    uint words = 0;\n" + lengths + "    return words;\n}\n";
 }
 
@@ -179,8 +179,8 @@ std::string Definitions::source() const {
 
     for (const RecordType& record : records) {
         text += struct_definition(record) + layout_checks(record) + order_definition(record);
-        text += "#if CELLIST_MODES & (CELLIST_RANKING | CELLIST_CHOOSING)\n" +
-                rank_definition(record) + "#endif\n";
+        text += "#if CELLIST_MODES & (CELLIST_THRESHOLD_PASS | CELLIST_SELECTION_PASS)\n" +
+                words_definition(record) + "#endif\n";
         text += "CELLIST_DEFINE_NODE(" + record.name + ", " +
                 std::to_string(node_layout(record).alignment) + ")" + because_of(record);
         text += "CELLIST_DEFINE_RECORD(" + record.name + ")" + because_of(record);

@@ -34,11 +34,11 @@ class ListSorter {
 public:
     ListSorter(MemoryOwner device, Definitions definitions);
 
-    /// Sorts all lists; `front` nodes of each at least, the others may follow in any order. Blocks until
+    /// Sorts all lists, the first `top_k` nodes of each at least: the others may follow in any order. Blocks until
     /// it is known how long the lists are. Throws Error where links or offsets are corrupt. Whatever fails,
     /// sound lists keep their records, in some order.
-    cl::Event sort(ListStorage& storage, const SortKey& key, std::uint32_t front);
-    /// Sorts all lists in their places, one work-item a list. Does not block.
+    cl::Event sort(ListStorage& storage, const SortKey& key, std::uint32_t top_k);
+    /// Sorts all lists in place, one work-item a list. Does not block.
     cl::Event sort_in_place(ListStorage& storage, const SortKey& key);
 
     /// Divides the work from now on as on a device of this type; for tests.
@@ -58,18 +58,18 @@ private:
     };
 
     [[nodiscard]] Sort sort_of(ListStorage& storage, const SortKey& key) const;
-    bool bring_to_front(Sort& sort, std::uint32_t front);
+    bool select_top_k(Sort& sort, std::uint32_t top_k);
     void sort_in_place(Sort& sort);
     void sort_classes(Sort& sort);
     void sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage);
     void sort_long(Sort& sort);
     /// The keys of long lists, where their values must be kept: one buffer goes with the pool, the other
-    /// with the spare one.
+    /// with its back buffer.
     struct Keys {
         Memory of_pool;
-        Memory of_spare;
+        Memory of_back_buffer;
     };
-    void merge(Sort& sort, const Memory& longs, const Memory& owners, const Keys& keys);
+    void merge(Sort& sort, const Memory& long_lists, const Memory& chunk_owners, const Keys& keys);
     [[nodiscard]] std::optional<Keys> keys_of(const Sort& sort) const;
     [[nodiscard]] bool has_room_for(const Sort& sort, std::uint64_t more_bytes) const;
     void run_long(Sort& sort, const char* name, const Range& range, const Arguments& arguments);

@@ -11,7 +11,7 @@ namespace cellist::detail {
 
 static_assert(Shape::extent_max == CELLIST_EXTENT_MAX);
 static_assert(Shape::cells_max < CELLIST_NONE);
-static_assert(sizeof(cellist_hand) == sizeof(cellist_shard));
+static_assert(sizeof(cellist_thread_block) == sizeof(cellist_shard));
 
 namespace {
 
@@ -25,9 +25,9 @@ cl_uint shard_bits_for(std::uint64_t capacity_nodes) {
     return bits;
 }
 
-/// Elements of the counters that the owners of hands take.
-std::size_t elements_of_owners(cl_uint hands) {
-    return hands * sizeof(cl_ulong) / sizeof(cellist_shard);
+/// Elements of the counters that the owners of thread_slots take.
+std::size_t elements_of_threads(cl_uint thread_slots) {
+    return thread_slots * sizeof(cl_ulong) / sizeof(cellist_shard);
 }
 
 /// Builds that grow as often as this end with an error.
@@ -83,9 +83,9 @@ cellist_view ListStorage::view() const {
             slots_,
             static_cast<cl_uint>(slice_.first_cell),
             open_ ? static_cast<cl_uint>(slice_.cells) : 0,
-            rank_member_,
-            rank_words_,
-            hands_with(capacity_nodes_),
+            key_member_,
+            threshold_words_,
+            thread_slots_with(capacity_nodes_),
             0};
 }
 
@@ -101,13 +101,13 @@ void ListStorage::add_to(Arguments& arguments, const Memory& nodes, const Memory
 }
 
 std::uint64_t ListStorage::pool_nodes_with(std::uint64_t capacity_nodes) const {
-    return capacity_nodes + std::uint64_t{hands_with(capacity_nodes)} * CELLIST_BLOCK_NODES;
+    return capacity_nodes + std::uint64_t{thread_slots_with(capacity_nodes)} * CELLIST_BLOCK_NODES;
 }
 
 std::uint64_t ListStorage::counters_with(std::uint64_t capacity_nodes) const {
-    const cl_uint hands = hands_with(capacity_nodes);
-    return (std::uint64_t{1} << shard_bits_for(capacity_nodes)) + 1 + hands +
-           elements_of_owners(hands);
+    const cl_uint thread_slots = thread_slots_with(capacity_nodes);
+    return (std::uint64_t{1} << shard_bits_for(capacity_nodes)) + 1 + thread_slots +
+           elements_of_threads(thread_slots);
 }
 
 std::uint64_t ListStorage::bytes_with(std::uint64_t capacity_nodes) const {
@@ -117,31 +117,31 @@ std::uint64_t ListStorage::bytes_with(std::uint64_t capacity_nodes) const {
 
 std::uint64_t ListStorage::replaceable_bytes() const {
     return nodes_.size_bytes() + shards_.size_bytes() +
-           (spare_ ? spare_->nodes.size_bytes() + spare_->heads.size_bytes() : 0);
+           (back_buffer_ ? back_buffer_->nodes.size_bytes() + back_buffer_->heads.size_bytes() : 0);
 }
 
-const ListStorage::Spare* ListStorage::spare() {
-    if (spare_) return &*spare_;
+const ListStorage::BackBuffer* ListStorage::back_buffer() {
+    if (back_buffer_) return &*back_buffer_;
     const std::uint64_t heads = mode_ == CELLIST_LINKED ? shape_.cells() : 0;
     if (!has_room_for(bytes() + nodes_.size_bytes() + heads * sizeof(cl_uint))) return nullptr;
     try {
-        Spare made{Memory(device_, pool_nodes(), node_bytes_, "second pool"),
-                   Memory(device_, heads, sizeof(cl_uint), "second head buffer")};
+        BackBuffer made{Memory(device_, pool_nodes(), node_bytes_, "second pool"),
+                        Memory(device_, heads, sizeof(cl_uint), "second head buffer")};
         // Some drivers find out only at the first use whether they have the memory.
         constexpr cl_uchar zero = 0;
         for (Memory* memory : {&made.nodes, &made.heads})
             memory->fill(&zero, sizeof zero, std::min<std::uint64_t>(memory->size_bytes(), 1));
-        spare_ = std::move(made);
+        back_buffer_ = std::move(made);
     } catch (const OpenClError& error) {
         if (!out_of_memory(error)) throw;
         return nullptr;
     }
-    return &*spare_;
+    return &*back_buffer_;
 }
 
-void ListStorage::adopt_spare() noexcept {
-    std::swap(nodes_, spare_->nodes);
-    std::swap(heads_, spare_->heads);
+void ListStorage::swap_back_buffer() noexcept {
+    std::swap(nodes_, back_buffer_->nodes);
+    std::swap(heads_, back_buffer_->heads);
 }
 
 std::optional<std::string> ListStorage::refusal(std::uint64_t capacity_nodes) const {
@@ -185,7 +185,7 @@ void ListStorage::allocate_pool(std::uint64_t capacity_nodes) {
     // The old nodes go first, so that the device never holds both pools.
     capacity_nodes_ = 0;
     nodes_ = Memory();
-    spare_.reset();
+    back_buffer_.reset();
     const cl_uint bits = shard_bits_for(capacity_nodes);
     shards_ = Memory(device_, counters_with(capacity_nodes), sizeof(cellist_shard), "counters");
     shard_bits_ = bits;
@@ -206,17 +206,17 @@ PendingRead ListStorage::read_late(std::array<cl_uint, 2>& words) const {
     return shards_.read_later(words.data(), sizeof words, from + offsetof(cellist_shard, late_low));
 }
 
-ListStorage::Counters ListStorage::sum(const Shards& shards, cl_uint hands) {
+ListStorage::Counters ListStorage::sum(const Shards& shards, cl_uint thread_slots) {
     Counters sum;
-    const std::size_t count = shards.size() - hands - elements_of_owners(hands);
+    const std::size_t count = shards.size() - thread_slots - elements_of_threads(thread_slots);
     for (const cellist_shard& shard : std::span(shards).first(count)) {
         sum.allocated += shard.allocated;
         sum.dropped += wide(shard.dropped_low, shard.dropped_high);
         sum.rejected += wide(shard.rejected_low, shard.rejected_high);
         sum.late += wide(shard.late_low, shard.late_high);
     }
-    for (const cellist_shard& element : std::span(shards).subspan(count, hands)) {
-        const auto hand = std::bit_cast<cellist_hand>(element);
+    for (const cellist_shard& element : std::span(shards).subspan(count, thread_slots)) {
+        const auto hand = std::bit_cast<cellist_thread_block>(element);
         sum.allocated -= (hand.last - hand.node) + (hand.end - hand.next);
     }
     return sum;
@@ -308,7 +308,7 @@ void ListStorage::release_pool() noexcept {
     if (!released_nodes_) released_nodes_ = capacity_nodes_;
     capacity_nodes_ = 0;
     nodes_ = Memory();
-    spare_.reset();
+    back_buffer_.reset();
 }
 
 void ListStorage::recover(bool without_pool) {

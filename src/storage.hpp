@@ -87,9 +87,9 @@ public:
 
     /// Records that surely fit.
     [[nodiscard]] std::uint64_t capacity_nodes() const { return capacity_nodes_; }
-    /// Nodes there are; more than that where threads have some in their hands.
+    /// Nodes there are; more than that where threads have some in their thread_slots.
     [[nodiscard]] std::uint64_t pool_nodes() const { return pool_nodes_with(capacity_nodes_); }
-    /// Elements of the counters, hands of threads included.
+    /// Elements of the counters, thread_slots of threads included.
     [[nodiscard]] std::uint64_t counters() const { return counters_with(capacity_nodes_); }
     /// Device memory of all buffers that the storage keeps.
     [[nodiscard]] std::uint64_t bytes() const { return device_.bytes(); }
@@ -101,16 +101,16 @@ public:
     [[nodiscard]] const cl::Buffer& nodes() const { return nodes_.cl(); }
 
     /// Memory for as many nodes as the pool has, and for their heads where lists are linked.
-    struct Spare {
+    struct BackBuffer {
         Memory nodes;
         Memory heads;
     };
     /// Makes it the first time, and keeps it as long as the pool. Null where the budget or the device
     /// has no room for it.
-    [[nodiscard]] const Spare* spare();
-    /// The spare nodes and heads take the place of the pool's, and these become spare: linked lists have
+    [[nodiscard]] const BackBuffer* back_buffer();
+    /// The back_buffer nodes and heads take the place of the pool's, and these become back_buffer: linked lists have
     /// moved, and nothing else is in the pool.
-    void adopt_spare() noexcept;
+    void swap_back_buffer() noexcept;
     /// The mode in which the lists are read.
     [[nodiscard]] cl_uint mode() const { return mode_; }
     /// Records in the lists.
@@ -142,7 +142,7 @@ protected:
                 const cellist_view& view) const;
     [[nodiscard]] const RecordType& record() const { return definitions_.records.back(); }
     [[nodiscard]] std::uint64_t pool_nodes_with(std::uint64_t capacity_nodes) const;
-    /// Elements of the counters, hands and their owners included.
+    /// Elements of the counters, thread_slots and their owners included.
     [[nodiscard]] std::uint64_t counters_with(std::uint64_t capacity_nodes) const;
     [[nodiscard]] std::uint64_t bytes_with(std::uint64_t capacity_nodes) const;
     /// Device memory of the buffers that another pool would replace.
@@ -163,10 +163,10 @@ protected:
     void grow_pool(std::uint64_t capacity_nodes, const BuildReport& report);
     /// Enqueues the reading of the counters: they are there when it has arrived.
     [[nodiscard]] PendingRead read_counters(Shards& shards) const;
-    /// Of counters that are followed by so many hands. What is in these counts as free.
-    [[nodiscard]] static Counters sum(const Shards& shards, cl_uint hands);
-    /// The hands of threads with a pool of this capacity: see threads.clh.
-    [[nodiscard]] virtual cl_uint hands_with(std::uint64_t) const { return 0; }
+    /// Of counters that are followed by so many thread_slots. What is in these counts as free.
+    [[nodiscard]] static Counters sum(const Shards& shards, cl_uint thread_slots);
+    /// The thread_slots of threads with a pool of this capacity: see threads.clh.
+    [[nodiscard]] virtual cl_uint thread_slots_with(std::uint64_t) const { return 0; }
     /// Sets words of heads, and clears all counters. Does not block.
     void clear_heads_and_counters(const Memory& heads, cl_uint head, std::uint64_t first_word,
                                   std::uint64_t words);
@@ -215,15 +215,15 @@ protected:
     std::shared_ptr<Expected> expected_ = std::make_shared<Expected>();  ///< of the last build
     cl_uint shard_bits_ = 0;
     cl_uint slots_ = 0;
-    cl_uint rank_member_ = 0;
-    cl_uint rank_words_ = 0;
+    cl_uint key_member_ = 0;
+    cl_uint threshold_words_ = 0;
     std::uint32_t growths_ = 0;  ///< of this build
     Slice slice_;
     bool open_ = false;  ///< for inserts
     Memory heads_;
     Memory nodes_;
     Memory shards_;
-    std::optional<Spare> spare_;
+    std::optional<BackBuffer> back_buffer_;
     std::optional<Kernel> clear_;
     Shards counters_;        ///< of the last pass
     ReadbackFence reading_;  ///< what a review waits for: the last reading of the pass

@@ -28,7 +28,7 @@ void CountedStorage::add_to(Arguments& arguments) const {
     partitioned.capacity_nodes = static_cast<cl_uint>(plan.nodes);
     // Blocks from one counter: those that are being filled lie close together.
     partitioned.shard_bits = 0;
-    partitioned.hands = plan.hands;
+    partitioned.thread_slots = plan.thread_slots;
     partitioned.partition_bits = plan.bits;
     ListStorage::add_to(arguments, partitions_->nodes(), partitions_->heads(), partitioned);
 }
@@ -104,13 +104,13 @@ void CountedStorage::move_from_partitions() {
         move_partition_.emplace(kernel("cellist_move_partition", kernels::partitions_cl, mode_));
     }
     const Partitions::Plan& plan = partitions_->plan();
-    partition_starts_->run(1, partitions_->heads().cl(), plan.hands, plan.partitions,
+    partition_starts_->run(1, partitions_->heads().cl(), plan.thread_slots, plan.partitions,
                            partitions_->starts().cl());
     Arguments arguments;
     ListStorage::add_to(arguments);
     arguments.add_nodes(partitions_->nodes(), record().name);
     arguments.add(partitions_->heads().cl());
-    arguments.add(plan.hands);
+    arguments.add(plan.thread_slots);
     arguments.add(plan.bits);
     arguments.add(partitions_->starts().cl());
     move_partition_->enqueue(Range(plan.partitions), arguments);

@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::uint64_t default_capacity_nodes = 65536;
 
-/// What lies in the hands of threads is at most this part of a pool; smaller pools have none.
-constexpr std::uint64_t hands_part = 16;
+/// What lies in the thread_slots of threads is at most this part of a pool; smaller pools have none.
+constexpr std::uint64_t thread_blocks_part = 16;
 
 }  // namespace
 
@@ -27,19 +27,21 @@ LinkedStorage::LinkedStorage(std::shared_ptr<DeviceState> device, const Definiti
 }
 
 /// Where the pool does not grow it holds exactly what the options say: no thread may have free nodes for itself.
-cl_uint LinkedStorage::hands_with(std::uint64_t capacity_nodes) const {
+cl_uint LinkedStorage::thread_slots_with(std::uint64_t capacity_nodes) const {
     if (!device_->info.one_thread_per_work_group || options_.overflow != Overflow::grow) return 0;
-    const cl_uint hands = hands_of(device_->info);
-    const std::uint64_t nodes = std::uint64_t{hands} * CELLIST_BLOCK_NODES;
-    if (hands_part * nodes > capacity_nodes || capacity_nodes > CELLIST_CAPACITY_NODES_MAX - nodes)
+    const cl_uint thread_slots = thread_slots_of(device_->info);
+    const std::uint64_t nodes = std::uint64_t{thread_slots} * CELLIST_BLOCK_NODES;
+    if (thread_blocks_part * nodes > capacity_nodes ||
+        capacity_nodes > CELLIST_CAPACITY_NODES_MAX - nodes)
         return 0;
     // Nor where that would take more memory than there may be.
     const std::uint64_t pool_bytes = (capacity_nodes + nodes) * node_bytes_;
-    const std::uint64_t counters = (1u << CELLIST_SHARD_BITS_MAX) + 1 + 2 * std::uint64_t{hands};
+    const std::uint64_t counters =
+        (1u << CELLIST_SHARD_BITS_MAX) + 1 + 2 * std::uint64_t{thread_slots};
     const bool fits = pool_bytes <= device_->info.max_allocation_bytes &&
                       heads_.size_bytes() + pool_bytes + counters * sizeof(cellist_shard) <=
                           options_.budget_bytes;
-    return fits ? hands : 0;
+    return fits ? thread_slots : 0;
 }
 
 void LinkedStorage::clear() {
@@ -53,7 +55,7 @@ bool LinkedStorage::finish_pass() {
 }
 
 bool LinkedStorage::review_pass(BuildReport& report) {
-    const Counters counters = sum(counters_, hands_with(capacity_nodes_));
+    const Counters counters = sum(counters_, thread_slots_with(capacity_nodes_));
     update(report, counters, counters.allocated);
     if (counters.dropped == 0 || options_.overflow == Overflow::drop) return true;
 
@@ -95,12 +97,12 @@ std::function<Validation()> LinkedStorage::validate() {
     arguments.add(check->reached.cl());
     check->done = find(check->findings, *validate_, arguments);
     check->done = read_counters(check->shards);
-    return [check, expected = expected_, hands = hands_with(capacity_nodes_)] {
+    return [check, expected = expected_, thread_slots = thread_slots_with(capacity_nodes_)] {
         check->done.wait();
         const cellist_findings& found = check->findings.found;
         return Validation{found.broken, found.repeated,
                           expected->stored - std::min<std::uint64_t>(expected->stored, found.nodes),
-                          sum(check->shards, hands).late, bad_cell(found)};
+                          sum(check->shards, thread_slots).late, bad_cell(found)};
     };
 }
 

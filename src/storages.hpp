@@ -23,7 +23,7 @@ private:
     bool finish_pass() override;
     bool review_pass(BuildReport& report) override;
     void make_whole(bool without_pool) override;
-    [[nodiscard]] cl_uint hands_with(std::uint64_t capacity_nodes) const override;
+    [[nodiscard]] cl_uint thread_slots_with(std::uint64_t capacity_nodes) const override;
 
     std::optional<Kernel> validate_;
 };
@@ -118,18 +118,18 @@ private:
     bool review_pass(BuildReport& report) override;
     void make_whole(bool without_pool) override;
 
-    void prepare_ranking();
-    void run(std::optional<Kernel>& step, const char* name, const Memory* choice = nullptr);
+    void prepare_threshold_pass();
+    void run(std::optional<Kernel>& step, const char* name, const Memory* selection = nullptr);
     [[nodiscard]] std::uint64_t row(std::uint64_t number) const { return number * shape_.cells(); }
 
     CellScan scan_;
-    bool ranked_ = false;  ///< the next pass fills the slots
-    Shards ranking_;       ///< counters of the last ranking pass
+    bool selecting_ = false;  ///< the next pass fills the slots
+    Shards threshold_pass_;   ///< counters of the last ranking pass
     CellScan::Totals kept_;
-    cellist_choice choice_{};
-    Memory choice_memory_;
+    cellist_selection selection_{};
+    Memory selection_memory_;
     std::optional<Kernel> set_thresholds_;
-    std::optional<Kernel> check_choice_;
+    std::optional<Kernel> check_selection_;
 };
 
 }  // namespace cellist::detail

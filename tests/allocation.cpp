@@ -162,11 +162,11 @@ TEST_CASE("straight and divergent inserts grow the pool to the exact demand") {
         }
 }
 
-// ---- the hands of threads ----------------------------------------------------------------------
+// ---- the thread_blocks of threads ----------------------------------------------------------------------
 
 TEST_CASE("a pool that grows holds its capacity in one pass, whatever kernels insert") {
     // With threads that have nodes of their own, where the device has such, and without.
-    for (const char* options : {"", "-DCELLIST_THREADS=0"}) {
+    for (const char* options : {"", "-DCELLIST_ONE_THREAD_PER_WORK_GROUP=0"}) {
         constexpr cl_uint items = 4096;
         constexpr cl_uint each = 16;
         constexpr std::uint64_t capacity = kernels.size() * items * each;
@@ -202,11 +202,11 @@ TEST_CASE("a node in the hand of a thread is free") {
 kernel void steal(CELLIST_LISTS(Item, lists), global uint* found)
 {
     const cellist_view lists_view = cellist_view_of(lists);
-    volatile global cellist_hand* hands = cellist_hands(lists_shards, lists_view);
+    volatile global cellist_thread_block* thread_blocks = cellist_thread_blocks(lists_shards, lists_view);
     *found = 0;
-    for (uint i = 0; i < lists_view.hands; ++i) {
-        if (hands[i].node != hands[i].last) lists_heads[0] = hands[i].node;
-        *found += hands[i].last - hands[i].node + hands[i].end - hands[i].next;
+    for (uint i = 0; i < lists_view.thread_slots; ++i) {
+        if (thread_blocks[i].node != thread_blocks[i].last) lists_heads[0] = thread_blocks[i].node;
+        *found += thread_blocks[i].last - thread_blocks[i].node + thread_blocks[i].end - thread_blocks[i].next;
     }
 }
 )",

@@ -141,8 +141,10 @@ TEST_CASE("kernels that know no threads count and fill") {
     const Buffer<cl_uint> cells(device(), inserts.cells);
     const Buffer<Item> records(device(), inserts.records);
     Lists<Item> lists(device(), {300}, {.storage = Storage::counted});
-    Kernel kernel(device(), Source{.text = insert_source("Item"), .options = "-DCELLIST_THREADS=0"},
-                  "insert_all", lists);
+    Kernel kernel(
+        device(),
+        Source{.text = insert_source("Item"), .options = "-DCELLIST_ONE_THREAD_PER_WORK_GROUP=0"},
+        "insert_all", lists);
     for (int build = 0; build < 4; ++build) {
         const BuildReport report =
             lists.build(kernel, inserts.size(), cells, records, cl_uint{50'000});
