@@ -323,11 +323,9 @@ void ListStorage::recover(bool without_pool) {
 std::unique_ptr<ListStorage> make_storage(std::shared_ptr<DeviceState> device,
                                           const Definitions& definitions, const Shape& shape,
                                           const ListsOptions& options) {
+    if (options.storage.nearest_key())
+        return std::make_unique<NearestStorage>(std::move(device), definitions, shape, options);
     const bool fixed = options.storage == Storage::fixed;
-    if (options.overflow == Overflow::keep_nearest && !fixed)
-        throw Error("Overflow::keep_nearest needs Storage::fixed");
-    if (options.overflow != Overflow::keep_nearest && !options.nearest_by.empty())
-        throw Error("nearest_by needs Overflow::keep_nearest");
     if (options.overflow != Overflow::grow &&
         !(fixed ? options.slots.has_value() : options.capacity_nodes.has_value()))
         throw Error(std::string("an Overflow other than grow needs ") +
@@ -338,9 +336,6 @@ std::unique_ptr<ListStorage> make_storage(std::shared_ptr<DeviceState> device,
         case Storage::counted:
             return std::make_unique<CountedStorage>(std::move(device), definitions, shape, options);
         case Storage::fixed:
-            if (options.overflow == Overflow::keep_nearest)
-                return std::make_unique<NearestStorage>(std::move(device), definitions, shape,
-                                                        options);
             return std::make_unique<FixedStorage>(std::move(device), definitions, shape, options);
         case Storage::automatic:
             break;

@@ -7,32 +7,39 @@ namespace cellist::detail {
 
 namespace {
 
-/// Which member of a record is called so. Throws Error if none is, or if it is no scalar.
-cl_uint member_index(const RecordType& record, const std::string& name) {
+/// Which member of a record the key is. Throws Error for the key of another record.
+cl_uint member_index(const RecordType& record, const NearestKey& key) {
+    if (key.record != record.name)
+        throw Error("nearest() names a member of " + key.record + ", and the lists are of " +
+                    record.name);
     const auto member =
         std::find_if(record.members.begin(), record.members.end(),
-                     [&](const RecordMember& candidate) { return candidate.name == name; });
-    if (member == record.members.end() || !member->is_scalar)
-        throw Error("Overflow::keep_nearest needs the name of a scalar member of " + record.name +
-                    " in nearest_by, not '" + name + "'");
+                     [&](const RecordMember& candidate) { return candidate.name == key.member; });
     return static_cast<cl_uint>(member - record.members.begin());
+}
+
+/// No list outgrows its slots, so nothing grows, and a build that is reviewed may still change the lists.
+ListsOptions without_growth(ListsOptions options) {
+    options.overflow = Overflow::stop;
+    return options;
 }
 
 }  // namespace
 
 NearestStorage::NearestStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
                                const Shape& shape, const ListsOptions& options)
-    : ListStorage(std::move(device), definitions, shape, options, CELLIST_FIXED,
+    : ListStorage(std::move(device), definitions, shape, without_growth(options), CELLIST_FIXED,
                   definitions.records.back().size,
                   // One row of thresholds: more come with the ties.
-                  std::uint64_t{CELLIST_ROW_LEAST} + *options.slots + 1),
+                  std::uint64_t{CELLIST_ROW_LEAST} + options.storage.nearest_key()->slots + 1),
       scan_(device_, shape.cells(), 0),
       selection_memory_(device_, 1, sizeof selection_, "selection") {
-    key_member_ = member_index(record(), options.nearest_by);
-    const std::uint64_t capacity = std::uint64_t{*options.slots} * shape.cells();
+    const NearestKey& key = *options.storage.nearest_key();
+    key_member_ = member_index(record(), key);
+    const std::uint64_t capacity = std::uint64_t{key.slots} * shape.cells();
     if (const auto reason = refusal(capacity)) throw Error(*reason);
     allocate_pool(capacity);
-    slots_ = *options.slots;
+    slots_ = key.slots;
     clear();
 }
 
@@ -64,7 +71,7 @@ void NearestStorage::prepare_threshold_pass() {
     if (heads_.size_bytes() < words * sizeof(cl_uint)) {
         const std::uint64_t all = bytes() - heads_.size_bytes() + words * sizeof(cl_uint);
         if (all > options_.budget_bytes)
-            throw Error("records that are equal in " + options_.nearest_by +
+            throw Error("records that are equal in " + options_.storage.nearest_key()->member +
                         " take another word of thresholds: " + std::to_string(all) +
                         " bytes in all, over the budget of " +
                         std::to_string(options_.budget_bytes) + ": raise budget_bytes");
@@ -122,7 +129,7 @@ bool NearestStorage::review_pass(BuildReport& report) {
                                 std::to_string(ranked_records) +
                                 " or different ones when it ranked them: it must insert the same "
                                 "records every time, or use "
-                                "another policy than Overflow::keep_nearest");
+                                "another storage than nearest()");
     // Records that are equal in every word are the same: any of them will do.
     if (selection_.undecided == 0 || threshold_words_ >= selection_.words) return true;
     selecting_ = false;

@@ -226,7 +226,7 @@ TEST_CASE("every record of random builds is stored, dropped or rejected", "[acco
         const HostLists<Item> found = lists.download();
         REQUIRE(found.records().size() == stored);
         REQUIRE(is_sub_multiset(found, input));
-        ++by_storage[static_cast<std::size_t>(options.storage)];
+        ++by_storage[static_cast<std::size_t>(Storage{options.storage})];
         short_of_room += fits ? 0 : 1;
     }
     std::cout << "accounting: " << cases << " cases: " << by_storage[0] << " linked, "

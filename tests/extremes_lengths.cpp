@@ -184,11 +184,7 @@ TEST_CASE("every work-item inserts into the same cell", "[extremes]") {
 }
 
 TEST_CASE("the nearest of what every work-item inserts into the same cell are kept", "[extremes]") {
-    Lists<Item> lists(device(), {3},
-                      {.storage = Storage::fixed,
-                       .overflow = Overflow::keep_nearest,
-                       .slots = 3,
-                       .nearest_by = "key"});
+    Lists<Item> lists(device(), {3}, {.storage = nearest(&Item::key, 3)});
     Kernel insert(device(), hot_source, "insert_hot", lists);
     const BuildReport report = lists.build(insert, inserting);
     REQUIRE(report.stored == 3);

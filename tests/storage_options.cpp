@@ -78,12 +78,8 @@ const std::vector<Together> together{
     {"capacity and stop, fixed",
      {.storage = Storage::fixed, .overflow = Overflow::stop, .capacity_nodes = 140, .slots = 13},
      0},
-    {"capacity and keep_nearest",
-     {.storage = Storage::fixed,
-      .overflow = Overflow::keep_nearest,
-      .capacity_nodes = 5,
-      .slots = 3,
-      .nearest_by = "key"},
+    {"nearest, stop and capacity",
+     {.storage = nearest(&Item::key, 3), .overflow = Overflow::stop, .capacity_nodes = 5},
      30},
     {"slots, automatic", {.storage = Storage::automatic, .slots = 1}, 140},
     {"slots and drop, automatic",
@@ -149,12 +145,6 @@ TEST_CASE("options that contradict each other are refused, and what is missing i
     };
     for (const Storage storage : {Storage::linked, Storage::counted, Storage::automatic}) {
         INFO("storage " << name_of(storage));
-        refuse({.storage = storage,
-                .overflow = Overflow::keep_nearest,
-                .capacity_nodes = 100,
-                .slots = 4,
-                .nearest_by = "key"},
-               "Overflow::keep_nearest needs Storage::fixed");
         for (const Overflow overflow : {Overflow::stop, Overflow::drop})
             refuse({.storage = storage, .overflow = overflow, .slots = 4},
                    "an Overflow other than grow needs capacity_nodes");
@@ -162,22 +152,6 @@ TEST_CASE("options that contradict each other are refused, and what is missing i
     for (const Overflow overflow : {Overflow::stop, Overflow::drop})
         refuse({.storage = Storage::fixed, .overflow = overflow, .capacity_nodes = 100},
                "an Overflow other than grow needs slots in Storage::fixed");
-    refuse({.storage = Storage::fixed,
-            .overflow = Overflow::keep_nearest,
-            .capacity_nodes = 100,
-            .nearest_by = "key"},
-           "an Overflow other than grow needs slots in Storage::fixed");
-    for (const Storage storage :
-         {Storage::linked, Storage::counted, Storage::fixed, Storage::automatic})
-        for (const Overflow overflow : {Overflow::grow, Overflow::stop, Overflow::drop}) {
-            INFO("storage " << name_of(storage));
-            refuse({.storage = storage,
-                    .overflow = overflow,
-                    .capacity_nodes = 100,
-                    .slots = 4,
-                    .nearest_by = "key"},
-                   "nearest_by needs Overflow::keep_nearest");
-        }
 }
 
 TEST_CASE("heads over the budget are refused in every storage") {

@@ -4,6 +4,9 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
+
+#include <cellist/struct.hpp>
 
 namespace cellist {
 
@@ -12,10 +15,6 @@ enum class Overflow {
     grow,  ///< enlarge the pool to the exact demand and run again
     stop,  ///< throw OverflowError; the lists are empty
     drop,  ///< keep what fits; the report counts what was dropped, and every list is valid
-    /// Storage::fixed: keep the records of each cell that come first by ListsOptions::nearest_by, one
-    /// for each slot. Equal keys are ordered by the remaining members, so the result does not depend
-    /// on timing. Two passes over the same kernel, two more for each tie-breaking word that is needed.
-    keep_nearest,
 };
 
 /// Which key comes first in a sorted list.
@@ -36,8 +35,47 @@ enum class Storage {
     automatic,
 };
 
+namespace detail {
+
+/// What nearest() takes, by name.
+struct NearestKey {
+    std::string record;
+    std::string member;
+    std::uint32_t slots = 0;
+};
+
+}  // namespace detail
+
+/// The storage of a container: an enumerator of Storage, or nearest(). Converts from and to Storage.
+class StorageOption {
+public:
+    StorageOption(Storage storage) : storage_(storage) {}
+    /// Storage::fixed for nearest().
+    operator Storage() const { return storage_; }
+
+    /// @private
+    explicit StorageOption(detail::NearestKey key)
+        : storage_(Storage::fixed), nearest_(std::move(key)) {}
+    /// @private
+    [[nodiscard]] const std::optional<detail::NearestKey>& nearest_key() const { return nearest_; }
+
+private:
+    Storage storage_;
+    std::optional<detail::NearestKey> nearest_;
+};
+
+/// A number of slots for each cell, in which the records stay that come first by a scalar member, e.g.
+/// `nearest(&Hit::depth, 8)`. The report counts the others as dropped. Equal keys are ordered by the remaining
+/// members, so the result does not depend on timing. Takes two passes over the same kernel, and two more for
+/// each tie-breaking word that is needed. ListsOptions::overflow, capacity_nodes and slots do not apply.
+template <class T, class M>
+[[nodiscard]] StorageOption nearest(M T::*member, std::uint32_t slots) {
+    static_assert(detail::Scalar<M>, "the nearest records are found by a scalar member");
+    return StorageOption({DeviceType<T>::name(), detail::member_name(member), slots});
+}
+
 struct ListsOptions {
-    Storage storage = Storage::linked;
+    StorageOption storage = Storage::linked;
     Overflow overflow = Overflow::grow;
     /// Nodes in the pool at first. Without it the pool starts at one node a cell, at least 65,536,
     /// under Overflow::grow; the other policies need it. Storage::fixed has no use for it.
@@ -45,8 +83,6 @@ struct ListsOptions {
     /// Slots for each cell in Storage::fixed at first: 4 under Overflow::grow, which raises it to the
     /// longest list; the other policies need it.
     std::optional<std::uint32_t> slots = {};
-    /// The scalar member that Overflow::keep_nearest ranks by, e.g. "depth"; for no other policy.
-    std::string nearest_by = {};
     /// Device memory that heads, nodes and counters may take together, and what sorts and builds keep
     /// of any length. The fixed state of a sort, some 60 bytes, comes on top.
     std::uint64_t budget_bytes = std::numeric_limits<std::uint64_t>::max();
