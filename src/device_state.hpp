@@ -52,12 +52,6 @@ private:
     Recent<std::string, cl::Program> programs_{programs_max};  ///< by options and source
 };
 
-/// Whether a device had no memory for what was asked of it.
-inline bool out_of_memory(const OpenClError& error) {
-    return error.code() == CL_MEM_OBJECT_ALLOCATION_FAILURE ||
-           error.code() == CL_OUT_OF_RESOURCES || error.code() == CL_OUT_OF_HOST_MEMORY;
-}
-
 /// Throws OpenClError if a call of the C interface has failed.
 inline void check(const char* call, cl_int code) {
     if (code != CL_SUCCESS) throw OpenClError(call, code);

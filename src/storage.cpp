@@ -54,22 +54,23 @@ ListStorage::ListStorage(std::shared_ptr<DeviceState> device, const Definitions&
     const std::uint64_t cell_bytes = head_words_a_cell * sizeof(cl_uint);
     const std::uint64_t more_bytes = more_head_words * sizeof(cl_uint);
     if (cell_bytes > allocation)
-        throw Error(std::to_string(cell_bytes) +
-                    " bytes of heads for each cell exceed this device's "
-                    "limit of " +
-                    mebibytes(allocation) + " per allocation: lower slots");
+        throw MemoryError(std::to_string(cell_bytes) +
+                          " bytes of heads for each cell exceed this device's "
+                          "limit of " +
+                          mebibytes(allocation) + " per allocation: lower slots");
     const std::uint64_t most_cells =
         more_bytes > allocation ? 0 : (allocation - more_bytes) / cell_bytes;
     if (shape.cells() > most_cells)
-        throw Error("a shape of " + shape.to_string() + " cells exceeds this device's limit of " +
-                    std::to_string(most_cells) + " cells (" + mebibytes(allocation) +
-                    " per allocation, " + std::to_string(cell_bytes) + " bytes a cell)");
+        throw MemoryError("a shape of " + shape.to_string() +
+                          " cells exceeds this device's limit of " + std::to_string(most_cells) +
+                          " cells (" + mebibytes(allocation) + " per allocation, " +
+                          std::to_string(cell_bytes) + " bytes a cell)");
     const std::uint64_t head_words = head_words_a_cell * shape.cells() + more_head_words;
     const std::uint64_t head_bytes = head_words * sizeof(cl_uint);
     if (head_bytes > options.budget_bytes)
-        throw Error("the heads of a shape of " + shape.to_string() + " cells take " +
-                    mebibytes(head_bytes) + ", over the budget of " +
-                    mebibytes(options.budget_bytes) + ": raise budget_bytes");
+        throw MemoryError("the heads of a shape of " + shape.to_string() + " cells take " +
+                          mebibytes(head_bytes) + ", over the budget of " +
+                          mebibytes(options.budget_bytes) + ": raise budget_bytes");
     heads_ = Memory(device_, head_words, sizeof(cl_uint), "head buffer");
 }
 

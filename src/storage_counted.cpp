@@ -11,7 +11,7 @@ CountedStorage::CountedStorage(std::shared_ptr<DeviceState> device, const Defini
                   definitions.records.back().size, 2, 1),
       scan_(device_, shape.cells(), counts_at()) {
     const std::uint64_t capacity = options.capacity_nodes.value_or(0);
-    if (const auto reason = refusal(capacity)) throw Error(*reason);
+    if (const auto reason = refusal(capacity)) throw MemoryError(*reason);
     allocate_pool(capacity);
     clear();
 }

@@ -12,7 +12,7 @@ FixedStorage::FixedStorage(std::shared_ptr<DeviceState> device, const Definition
       scan_(device_, shape.cells(), 0) {
     std::uint64_t slots = options.slots.value_or(4);
     if (!options.slots && refusal(nodes_with(slots))) slots = 0;
-    if (const auto reason = refusal(nodes_with(slots))) throw Error(*reason);
+    if (const auto reason = refusal(nodes_with(slots))) throw MemoryError(*reason);
     set_slots(slots);
     clear();
 }

@@ -21,7 +21,7 @@ LinkedStorage::LinkedStorage(std::shared_ptr<DeviceState> device, const Definiti
     std::uint64_t capacity =
         options.capacity_nodes.value_or(std::max(shape.cells(), default_capacity_nodes));
     if (!options.capacity_nodes && refusal(capacity)) capacity = 0;
-    if (const auto reason = refusal(capacity)) throw Error(*reason);
+    if (const auto reason = refusal(capacity)) throw MemoryError(*reason);
     allocate_pool(capacity);
     clear();
 }

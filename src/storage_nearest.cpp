@@ -37,7 +37,7 @@ NearestStorage::NearestStorage(std::shared_ptr<DeviceState> device, const Defini
     const NearestKey& key = *options.storage.nearest_key();
     key_member_ = member_index(record(), key);
     const std::uint64_t capacity = std::uint64_t{key.slots} * shape.cells();
-    if (const auto reason = refusal(capacity)) throw Error(*reason);
+    if (const auto reason = refusal(capacity)) throw MemoryError(*reason);
     allocate_pool(capacity);
     slots_ = key.slots;
     clear();
@@ -71,7 +71,7 @@ void NearestStorage::prepare_threshold_pass() {
     if (heads_.size_bytes() < words * sizeof(cl_uint)) {
         const std::uint64_t all = bytes() - heads_.size_bytes() + words * sizeof(cl_uint);
         if (all > options_.budget_bytes)
-            throw Error("records that are equal in " + options_.storage.nearest_key()->member +
+            throw MemoryError("records that are equal in " + options_.storage.nearest_key()->member +
                         " take another word of thresholds: " + std::to_string(all) +
                         " bytes in all, over the budget of " +
                         std::to_string(options_.budget_bytes) + ": raise budget_bytes");

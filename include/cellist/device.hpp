@@ -38,7 +38,8 @@ struct DeviceInfo {
 
 /// An OpenCL device with a context, a queue and a cache of built programs. Everything that is made
 /// from a Device shares them, and stays valid after the Device object is gone. Movable, not
-/// copyable; every use of a moved-from Device throws Error. Several threads may use one Device and objects
+/// copyable; every use of a moved-from Device throws Error. Every function that calls OpenCL throws OpenClError
+/// if the call fails. Several threads may use one Device and objects
 /// made from it, each object from one thread at a time.
 class Device {
 public:
@@ -54,8 +55,8 @@ public:
     /// Works on the caller's own context and queue. Several Devices may share a context: where a kernel of
     /// one uses Lists or Buffers of another, it runs in order with the commands of the other's queue. In an
     /// out-of-order queue, every command of the library starts after all that were enqueued before it,
-    /// including the caller's. Events have times where
-    /// the queue was made with CL_QUEUE_PROFILING_ENABLE.
+    /// including the caller's. Events have times where the queue was made with CL_QUEUE_PROFILING_ENABLE.
+    /// Throws Error if the queue belongs to another context.
     Device(cl::Context context, cl::CommandQueue queue);
 
     Device(Device&&) noexcept;

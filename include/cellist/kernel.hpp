@@ -32,8 +32,10 @@ class Kernel {
 public:
     /// Builds `code` and takes the kernel called `name` from it. `uses` names the types that the
     /// source may use: containers, and cellist::type<T> for other adapted structs. Throws OpenClError
-    /// with the compiler's log where the source does not build, where a struct's layout on the device
-    /// differs, and where OpenCL C reserves the name of a struct or member. Blocks while it compiles.
+    /// with the compiler's log if the source does not build, if a struct's layout on the device
+    /// differs, and if OpenCL C reserves the name of a struct or member. Throws Error if the source is
+    /// empty, if two structs have the same name, or if the device lacks doubles that a struct has. Blocks
+    /// while it compiles.
     template <class... Uses>
     Kernel(const Device& device, const Source& code, const std::string& name, const Uses&... uses)
         : Kernel(device.state(), code, name, definitions_of(uses...)) {}
@@ -54,7 +56,9 @@ public:
     /// Arguments in the kernel's order: scalars, adapted structs, Buffer, Lists, cl::Buffer, cl::Image,
     /// cl::Pipe, cl::Sampler, LocalMemory. Throws Error if their number, or the kind, size, type or
     /// context of one does not fit the kernel's parameters; signs and the widths of vectors are not
-    /// compared.
+    /// compared. Throws Error for a Range::local that is only partly 0, and for more local memory than
+    /// the device has. Throws OpenClError if the launch fails. An argument with a pending build ends that
+    /// build first, and then throws what the build throws.
     ///
     /// Lists and Buffers may belong to a Device with another queue of the same context. The kernel then
     /// waits for the commands that are on that queue, and later commands there wait for the kernel.

@@ -59,13 +59,23 @@ struct Element<M[count]> {
 /// block, with one exception: a call that uses lists with a pending build finishes that build first, and
 /// blocks, if it may still change the lists. Under Overflow::drop a pending build cannot change them,
 /// unless the storage is automatic.
+///
+/// All functions but shape() and those that only report sizes throw:
+/// - OpenClError if an OpenCL call fails.
+/// - MemoryError if the host, the device's largest allocation or the budget has no room for what the
+///   function makes; out_of_memory() tells whether any error means that.
+/// - what a pending build throws, if the function ends that build.
+/// - Error if the function that inserts uses the lists that it fills.
+///
+/// Where a function throws more than that, its comment says so. After an exception from a build or from
+/// clear() the lists are empty; other functions leave them as they are, unless the comment says otherwise.
 template <class T>
 class Lists {
     static_assert(detail::Adapted<T>, "adapt the record with CELLIST_STRUCT first");
 
 public:
-    /// Empty lists. Throws Error if the shape or the capacity exceeds a limit of the device or of
-    /// the budget.
+    /// Empty lists. Throws MemoryError if the shape or the capacity exceeds a limit of the device or of
+    /// the budget, and Error if the options contradict each other.
     Lists(const Device& device, const Shape& shape, const ListsOptions& options = {})
         : core_("a Lists object",
                 std::make_shared<detail::ListsCore>(device.state(), detail::definitions_of<T>(),
@@ -80,8 +90,9 @@ public:
     /// are the kernel's first parameters; `args` are the rest. The old records are gone when the kernel
     /// runs: run a kernel that reads them before the build.
     ///
-    /// Other containers among `args` are read-only. Where the kernel inserts into one, the build throws
-    /// Error with a message that names the container.
+    /// Other containers among `args` are read-only. If the kernel inserts into one, the build throws
+    /// Error with a message that names the container. Throws Error if a kernel does not insert the same
+    /// records in a pass that needs them again.
     ///
     /// If the pool is too small, the overflow policy decides: grow enlarges it to the exact demand
     /// and runs the kernel again, which must insert the same records again; stop and a demand over
@@ -133,7 +144,8 @@ public:
     /// stores the records. `read` is called for each slice, in order, with the lists of its cells in
     /// place and all others empty. The kernels must insert the same records every time. At the end the
     /// lists are empty. Throws OverflowError if a single list does not fit and the policy is not to
-    /// drop. Takes 8 bytes a cell for the counts. Blocks.
+    /// drop, and Error if the kernels insert other records than they counted. `read` cannot build the
+    /// lists: that throws Error. Takes 8 bytes a cell for the counts. Blocks.
     BuildReport build_slices(std::invocable auto&& insert,
                              std::invocable<const Slice&> auto&& read) {
         return core_->build_slices(std::ref(insert), std::ref(read));
@@ -187,8 +199,8 @@ public:
     }
 
     /// Sorts without blocking, and without a second pool: each list in its place, by one work-item, which
-    /// takes longer for most lists. For sound lists only: where links lead in circles, it ends, and the
-    /// lists may be anything.
+    /// takes longer for most lists. Throws what sort_by() throws for an expression. For sound lists only:
+    /// where links lead in circles, it ends, and the lists may be anything.
     template <class M>
     cl::Event sort_async(M T::*member, Order order = Order::ascending) {
         return core_->sort_async(key_of(member, order));
@@ -324,6 +336,9 @@ std::array<BuildReport, count> reports(Build& build) {
 /// Fills several containers at once: `insert` enqueues the kernels that fill them with Kernel::run, and
 /// is called again when one of the pools has grown. A report for each container, in order. After an
 /// exception all of them are empty. Blocks.
+///
+/// The containers belong to Devices of one device and context: build() throws Error for others, and for a
+/// container that is named twice. It throws what Lists::build throws.
 ///
 ///     auto [near, far] = cellist::build([&] { sort_out.run(n, near_lists, far_lists, points); },
 ///                                       near_lists, far_lists);

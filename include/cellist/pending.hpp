@@ -27,7 +27,7 @@ public:
     /// Completes when the device has done what was enqueued.
     [[nodiscard]] const cl::Event& event() const { return event_; }
 
-    /// Whether get() would find the device done. Does not block.
+    /// Whether get() would find the device done. Throws OpenClError. Does not block.
     [[nodiscard]] bool ready() const {
         if (event_() == nullptr) return true;
         cl_int status = CL_QUEUED;
