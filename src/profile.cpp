@@ -59,20 +59,6 @@ std::optional<fs::path> absolute_path_in(const char* variable) {
 
 }  // namespace
 
-const char* name_of(Storage storage) {
-    switch (storage) {
-        case Storage::linked:
-            return "linked";
-        case Storage::counted:
-            return "counted";
-        case Storage::fixed:
-            return "fixed";
-        case Storage::automatic:
-            break;
-    }
-    return "automatic";
-}
-
 const char* name_of(Pattern pattern) {
     return pattern == Pattern::coherent ? "coherent" : "random";
 }

@@ -26,7 +26,6 @@ inline constexpr std::array choices{Storage::linked, Storage::counted, Storage::
 enum class Pattern { coherent, random };
 inline constexpr std::array patterns{Pattern::coherent, Pattern::random};
 
-[[nodiscard]] const char* name_of(Storage storage);
 [[nodiscard]] const char* name_of(Pattern pattern);
 
 /// What a device was measured to do: the cost of a record in lists of `records` together.

@@ -35,6 +35,21 @@ enum class Storage {
     automatic,
 };
 
+/// The name of a storage, e.g. "linked".
+[[nodiscard]] constexpr const char* name_of(Storage storage) {
+    switch (storage) {
+        case Storage::linked:
+            return "linked";
+        case Storage::counted:
+            return "counted";
+        case Storage::fixed:
+            return "fixed";
+        case Storage::automatic:
+            return "automatic";
+    }
+    return "unknown";
+}
+
 namespace detail {
 
 /// What nearest() takes, by name.

@@ -111,7 +111,7 @@ int tune(const Device& device, std::ostream& out) {
             const detail::Cost cost = measure(device, storage, pattern, records, slots);
             profile.set_cost(storage, pattern, cost);
             out << "  " << std::left << std::setw(9) << detail::name_of(pattern) << std::setw(8)
-                << detail::name_of(storage) << std::right << std::setw(9)
+                << name_of(storage) << std::right << std::setw(9)
                 << nanoseconds(cost.build_seconds) << std::setw(10)
                 << nanoseconds(cost.read_seconds) << std::endl;
         }
