@@ -3,6 +3,7 @@
 
 #include <cellist/detail/record_type.hpp>
 #include <cellist/error.hpp>
+#include <cellist/struct.hpp>
 
 #include "cellist_kernels.hpp"
 
@@ -190,11 +191,8 @@ std::string Definitions::source() const {
 
 NodeLayout node_layout(const RecordType& record) {
     constexpr std::size_t link = sizeof(cl_uint);
-    const auto up = [](std::size_t value, std::size_t multiple) {
-        return (value + multiple - 1) / multiple * multiple;
-    };
     const std::size_t least = std::max(record.alignment, link);
-    const std::size_t size = up(up(record.size, link) + link, least);
+    const std::size_t size = round_up(round_up(record.size, link) + link, least);
     // A node of 8 or 16 bytes, or a multiple, can be moved in one go if it is aligned to that.
     const std::size_t natural = size % 16 == 0 ? 16 : size % 8 == 0 ? 8 : 4;
     return {size, std::max(least, natural)};

@@ -13,9 +13,6 @@ namespace {
 /// Nodes of the pool for one splitter of long linked lists; see sort_long.cl.
 constexpr unsigned segment_bits = 9;
 
-/// Keys whose kernels are kept for the next sort.
-constexpr std::size_t keys_max = 8;
-
 /// Longest list in which one work-item looks for the top k.
 constexpr cl_uint top_k_length_max = 4096;
 
@@ -96,55 +93,32 @@ std::string piece_type(std::size_t node_bytes) {
     return {};
 }
 
-std::string source_text(const KernelFile& file, const RecordType& record, bool linked,
-                        const SortKey& key, const SortTuning& tuning) {
+/// What the files of kernels for a sort take from the host; see sort.cl.
+std::string sort_definitions(const RecordType& record, bool linked, const SortKey& key,
+                             const SortTuning& tuning) {
     const std::string piece = piece_type(linked ? node_layout(record).size : record.size);
-    std::string text = "#define CELLIST_RECORD " + record.name + "\n" +
-                       define("KEY_BITS", key.bits) + define("KEEPS_KEYS", is_member(key) ? 0 : 1) +
-                       define("CHUNK_SIZE", tuning.chunk_size) + define("WIDTH", tuning.width) +
-                       define("ITEMS", tuning.items) + define("TEAM", tuning.team) +
-                       define("LISTS", tuning.lists) + define("MERGE_ITEMS", tuning.merge_items) +
-                       define("TOP_K", tuning.top_k) + define("SEGMENT_BITS", segment_bits) +
-                       (piece.empty() ? "" : "#define CELLIST_SORT_PIECE " + piece + "\n") +
-                       "#line 1 \"sort.cl\"\n";
-    text += kernels::sort_cl;
-    text += key_function(key) + "#line 1 \"" + file.name + "\"\n";
-    text += file.text;
-    return text;
+    return define("KEY_BITS", key.bits) + define("KEEPS_KEYS", is_member(key) ? 0 : 1) +
+           define("CHUNK_SIZE", tuning.chunk_size) + define("WIDTH", tuning.width) +
+           define("ITEMS", tuning.items) + define("TEAM", tuning.team) +
+           define("LISTS", tuning.lists) + define("MERGE_ITEMS", tuning.merge_items) +
+           define("TOP_K", tuning.top_k) + define("SEGMENT_BITS", segment_bits) +
+           (piece.empty() ? "" : "#define CELLIST_SORT_PIECE " + piece + "\n") + key_function(key);
 }
 
 }  // namespace
 
-ListSorter::ListSorter(MemoryOwner device, Definitions definitions)
+ListSorter::ListSorter(MemoryOwner device, RecordKernels& kernels)
     : device_(std::move(device)),
-      definitions_(std::move(definitions)),
+      kernels_(kernels),
       device_type_(device_->info.type),
       state_(device_, 1, sizeof(cellist_sort_state), "state of a sort"),
       cells_{Memory(device_, 1, sizeof(cl_uint), "cells with long lists"),
              Memory(device_, 1, sizeof(cl_uint), "cells with long lists")} {}
 
-ListSorter::Kernels& ListSorter::kernels_of(const SortKey& key) {
-    const auto known = std::find_if(kernels_.begin(), kernels_.end(),
-                                    [&](const auto& entry) { return entry.first == key; });
-    if (known != kernels_.end()) {
-        kernels_.splice(kernels_.begin(), kernels_, known);
-    } else {
-        kernels_.emplace_front(key, Kernels());
-        if (kernels_.size() > keys_max) kernels_.pop_back();
-    }
-    return kernels_.front().second;
-}
-
 Kernel& ListSorter::kernel(const KernelFile& file, const char* name, const Sort& sort,
                            const SortTuning& tuning) {
-    Kernels& kernels = kernels_of(sort.key);
-    const std::tuple id(std::string(name), sort.storage.mode(), tuning);
-    if (const auto known = kernels.find(id); known != kernels.end()) return known->second;
-    definitions_.modes = sort.storage.mode();
-    const std::string text =
-        source_text(file, definitions_.records.back(), sort.linked, sort.key, tuning);
-    return kernels.emplace(id, Kernel(device_, Source{.text = text}, name, definitions_))
-        .first->second;
+    return kernels_.get({{"sort.cl", kernels::sort_cl}, file}, name, sort.storage.mode(),
+                        sort_definitions(kernels_.record(), sort.linked, sort.key, tuning));
 }
 
 void ListSorter::clear_state() {
@@ -179,7 +153,7 @@ ListSorter::Sort ListSorter::sort_of(ListStorage& storage, const SortKey& key) c
     const bool linked = storage.mode() == CELLIST_LINKED;
     return {.storage = storage,
             .key = key,
-            .plan = SortPlan(device_type_, device_->info, linked, definitions_.records.back().size),
+            .plan = SortPlan(device_type_, device_->info, linked, kernels_.record().size),
             .linked = linked,
             .count = storage.cells()};
 }

@@ -2,37 +2,26 @@
 
 #include <array>
 #include <cstdint>
-#include <list>
-#include <map>
 #include <memory>
 #include <optional>
-#include <string>
-#include <string_view>
-#include <tuple>
 
 #include <cellist/detail/lists_core.hpp>
 #include <cellist/detail/memory.hpp>
-#include <cellist/detail/record_type.hpp>
 #include <cellist/kernel.hpp>
 
 #include "device_state.hpp"
+#include "record_kernels.hpp"
 #include "sort_tuning.hpp"
 #include "storage.hpp"
 #include "view.hpp"
 
 namespace cellist::detail {
 
-/// A source of the library.
-struct KernelFile {
-    const char* name;
-    std::string_view text;
-};
-
 /// Sorts the lists of a container in classes by their length: up to some hundred nodes by ranking, each
 /// list on its own; longer ones by all work-items together. Kernels are compiled when a list needs them.
 class ListSorter {
 public:
-    ListSorter(MemoryOwner device, Definitions definitions);
+    ListSorter(MemoryOwner device, RecordKernels& kernels);
 
     /// Sorts all lists, the first `top_k` nodes of each at least: the others may follow in any order. Blocks until
     /// it is known how long the lists are. Throws Error where links or offsets are corrupt. Whatever fails,
@@ -80,17 +69,14 @@ private:
     void clear_state();
     void read_state(Sort& sort) const;
     void check_nodes(const Sort& sort) const;
-    using Kernels = std::map<std::tuple<std::string, cl_uint, SortTuning>, Kernel>;
-    [[nodiscard]] Kernels& kernels_of(const SortKey& key);
     Kernel& kernel(const KernelFile& file, const char* name, const Sort& sort,
                    const SortTuning& tuning);
 
     MemoryOwner device_;
-    Definitions definitions_;
+    RecordKernels& kernels_;
     cl_device_type device_type_;
     Memory state_;
-    std::array<Memory, 2> cells_;                     ///< whose lists each class leaves, by turns
-    std::list<std::pair<SortKey, Kernels>> kernels_;  ///< of the last keys, the latest first
+    std::array<Memory, 2> cells_;  ///< whose lists each class leaves, by turns
     std::array<cl_uint, CELLIST_SORT_CLASSES> in_class_{};  ///< lists of the last sort
 };
 

@@ -98,6 +98,7 @@ public:
         return all_bytes <= std::min(options_.budget_bytes, device_->info.global_memory_bytes);
     }
     [[nodiscard]] std::uint64_t cells() const { return shape_.cells(); }
+    [[nodiscard]] Storage kind() const { return options_.storage; }
     [[nodiscard]] const cl::Buffer& nodes() const { return nodes_.cl(); }
 
     /// Memory for as many nodes as the pool has, and for their heads where lists are linked.
