@@ -15,8 +15,8 @@ AutomaticStorage::AutomaticStorage(RecordKernels& kernels, const Shape& shape,
     use(tuner_.storage());
 }
 
-/// Makes a storage, or another where this one cannot be made, in the place of the one in use. The old
-/// pool goes first, so that the device never holds both.
+/// Makes a storage, or another where this one cannot be made, in the place of the one in use. The
+/// old pool goes first, so that the device never holds both.
 void AutomaticStorage::use(Storage storage) {
     if (in_place_ == storage) return;
     in_place_.reset();
@@ -24,8 +24,7 @@ void AutomaticStorage::use(Storage storage) {
     std::exception_ptr error;
     for (std::optional<Storage> next = storage; next;) {
         try {
-            storage_ = make_storage(kernels_.device(), kernels_.definitions(), shape_,
-                                    tuner_.options(*next));
+            storage_ = make_storage(kernels_, shape_, tuner_.options(*next));
             in_place_ = next;
             return;
         } catch (const Error& reason) {
@@ -45,8 +44,8 @@ void AutomaticStorage::start() {
     storage_->start();
 }
 
-/// Excludes the storage in use from the choice, and starts the build anew in another. False if there is
-/// none.
+/// Excludes the storage in use from the choice, and starts the build anew in another. False if
+/// there is none.
 bool AutomaticStorage::replace(const BuildReport& report, const char* why, bool for_ever) {
     const std::optional<Storage> other = tuner_.exclude(storage_->kind(), why, for_ever);
     if (!other) return false;
@@ -105,8 +104,8 @@ BuildReport AutomaticStorage::build(const std::function<BuildReport()>& run) {
             return build_once(run);
         } catch (const OpenClError& error) {
             if (!first) first = std::current_exception();
-            // Drivers may find out in the middle of a build that they have no memory for it. Where all
-            // storages fail, the device is lost.
+            // Drivers may find out in the middle of a build that they have no memory for it. Where
+            // all storages fail, the device is lost.
             if (!out_of_memory(error) || tried == choices.size() ||
                 !tuner_.exclude(storage_->kind(),
                                 std::string("left: ") + error.call() + " found no memory"))

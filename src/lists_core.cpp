@@ -94,7 +94,7 @@ ListStorage& ListsCore::in_use() const { return storage_->get(); }
 
 void ListsCore::add_to(Arguments& arguments) const {
     make_ready_for_commands();
-    in_use().add_to(arguments);
+    in_use().add_to(arguments, is_building() ? Inserts::accepted : Inserts::refused);
 }
 
 void ListsCore::refuse_orphan(const std::shared_ptr<ListsCore>& self) {
@@ -197,7 +197,8 @@ PendingRead ListsCore::read_lengths(std::vector<cl_uint>& lengths) const {
         .read_later(lengths.data(), lengths.size() * sizeof(cl_uint));
 }
 
-/// The number of records in all lists; the greatest possible number while a build that may drop is pending.
+/// The number of records in all lists; the greatest possible number while a build that may drop is
+/// pending.
 std::uint64_t ListsCore::most_records() const {
     return state_.build ? in_use().capacity_nodes() : in_use().stored();
 }
@@ -270,11 +271,11 @@ void ListsCore::pack(const cl::Buffer& offsets,
     gather(0, shape_.cells(), words, allocate(most_records()), declaration, member);
 }
 
-/// How many records the kernels insert into each cell. The report says that all of them are dropped.
+/// How many records the kernels insert into each cell. The report says that all of them are
+/// dropped.
 std::vector<cl_uint> ListsCore::count(const std::function<void()>& insert, BuildReport& report) {
     auto counting = std::make_unique<CountedStorage>(
-        device_, kernels_->definitions(), shape_,
-        ListsOptions{.overflow = Overflow::drop, .capacity_nodes = 0});
+        *kernels_, shape_, ListsOptions{.overflow = Overflow::drop, .capacity_nodes = 0});
     CountedStorage& counter = *counting;
     const ScopedStorage scoped(*storage_, std::move(counting));
     enter({.phase = Phase::building});

@@ -19,19 +19,18 @@ struct KernelFile {
     std::string_view text;
 };
 
-/// The library's own kernels for lists of a record type. Compiles a kernel when it is first needed, and
-/// keeps the last ones.
+/// The library's own kernels for lists of a record type. Compiles a kernel when it is first needed,
+/// and keeps the last ones.
 class RecordKernels {
 public:
     /// The last of the definitions is the record.
     RecordKernels(std::shared_ptr<DeviceState> device, Definitions definitions);
 
-    /// The kernel `name` of a program: the definitions, then the files. CELLIST_RECORD is the record; the
-    /// containers among the arguments have this mode, as in view.h. The reference is valid until the next
-    /// call. Throws OpenClError.
+    /// The kernel `name` of a program: the definitions, then the files. CELLIST_RECORD is the
+    /// record; the containers among the arguments have this mode, as in view.h. The reference is
+    /// valid until the next call. Throws OpenClError.
     [[nodiscard]] Kernel& get(std::initializer_list<KernelFile> files, const char* name,
                               unsigned mode, const std::string& definitions = {});
-    [[nodiscard]] const Definitions& definitions() const { return definitions_; }
     [[nodiscard]] const RecordType& record() const { return definitions_.records.back(); }
     [[nodiscard]] const std::shared_ptr<DeviceState>& device() const { return device_; }
 

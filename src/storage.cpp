@@ -39,12 +39,11 @@ std::string mebibytes(std::uint64_t bytes) {
 
 }  // namespace
 
-ListStorage::ListStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
-                         const Shape& shape, const ListsOptions& options, cl_uint mode,
-                         std::size_t node_bytes, std::uint64_t head_words_a_cell,
+ListStorage::ListStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options,
+                         cl_uint mode, std::size_t node_bytes, std::uint64_t head_words_a_cell,
                          std::uint64_t more_head_words)
-    : device_(std::move(device)),
-      definitions_(definitions),
+    : device_(kernels.device()),
+      kernels_(kernels),
       shape_(shape),
       options_(options),
       mode_(mode),
@@ -74,7 +73,7 @@ ListStorage::ListStorage(std::shared_ptr<DeviceState> device, const Definitions&
     heads_ = Memory(device_, head_words, sizeof(cl_uint), "head buffer");
 }
 
-cellist_view ListStorage::view() const {
+cellist_view ListStorage::view(Inserts inserts) const {
     return {{static_cast<cl_uint>(shape_.extent(0)), static_cast<cl_uint>(shape_.extent(1)),
              static_cast<cl_uint>(shape_.extent(2)), static_cast<cl_uint>(shape_.extent(3))},
             static_cast<cl_uint>(shape_.cells()),
@@ -83,14 +82,16 @@ cellist_view ListStorage::view() const {
             mode_,
             slots_,
             static_cast<cl_uint>(slice_.first_cell),
-            open_ ? static_cast<cl_uint>(slice_.cells) : 0,
+            inserts == Inserts::accepted ? static_cast<cl_uint>(slice_.cells) : 0,
             key_member_,
             threshold_words_,
             thread_slots_with(capacity_nodes_),
             0};
 }
 
-void ListStorage::add_to(Arguments& arguments) const { add_to(arguments, nodes_, heads_, view()); }
+void ListStorage::add_to(Arguments& arguments, Inserts inserts) const {
+    add_to(arguments, nodes_, heads_, view(inserts));
+}
 
 void ListStorage::add_to(Arguments& arguments, const Memory& nodes, const Memory& heads,
                          const cellist_view& view) const {
@@ -286,22 +287,6 @@ PendingRead ListStorage::find(Findings& findings, Kernel& kernel,
 void ListStorage::start() {
     growths_ = 0;
     expect_nothing();
-    start_anew();
-}
-
-void ListStorage::begin_pass() {
-    prepare_pass();
-    open_ = true;
-}
-
-bool ListStorage::end_pass() {
-    open_ = false;
-    return finish_pass();
-}
-
-bool ListStorage::review(BuildReport& report) {
-    reading_.wait();
-    return review_pass(report);
 }
 
 void ListStorage::release_pool() noexcept {
@@ -314,18 +299,16 @@ void ListStorage::release_pool() noexcept {
 
 void ListStorage::recover(bool without_pool) {
     settle();
-    open_ = false;
     if (released_nodes_ && options_.overflow != Overflow::grow) allocate_pool(*released_nodes_);
     released_nodes_.reset();
     make_whole(without_pool);
     clear();
 }
 
-std::unique_ptr<ListStorage> make_storage(std::shared_ptr<DeviceState> device,
-                                          const Definitions& definitions, const Shape& shape,
+std::unique_ptr<ListStorage> make_storage(RecordKernels& kernels, const Shape& shape,
                                           const ListsOptions& options) {
     if (options.storage.nearest_key())
-        return std::make_unique<NearestStorage>(std::move(device), definitions, shape, options);
+        return std::make_unique<NearestStorage>(kernels, shape, options);
     const bool fixed = options.storage == Storage::fixed;
     if (options.overflow != Overflow::grow &&
         !(fixed ? options.slots.has_value() : options.capacity_nodes.has_value()))
@@ -333,24 +316,15 @@ std::unique_ptr<ListStorage> make_storage(std::shared_ptr<DeviceState> device,
                     (fixed ? "slots in Storage::fixed" : "capacity_nodes"));
     switch (options.storage) {
         case Storage::linked:
-            return std::make_unique<LinkedStorage>(std::move(device), definitions, shape, options);
+            return std::make_unique<LinkedStorage>(kernels, shape, options);
         case Storage::counted:
-            return std::make_unique<CountedStorage>(std::move(device), definitions, shape, options);
+            return std::make_unique<CountedStorage>(kernels, shape, options);
         case Storage::fixed:
-            return std::make_unique<FixedStorage>(std::move(device), definitions, shape, options);
+            return std::make_unique<FixedStorage>(kernels, shape, options);
         case Storage::automatic:
             break;
     }
     throw Error("unknown storage");
-}
-
-Kernel ListStorage::kernel(const std::string& name, std::string_view source, cl_uint mode) const {
-    Definitions definitions = definitions_;
-    definitions.modes = mode;
-    return {device_,
-            Source{.text = "#define CELLIST_RECORD " + record().name + "\n#line 1 \"" + name +
-                           ".cl\"\n" + std::string(source)},
-            name, definitions};
 }
 
 }  // namespace cellist::detail

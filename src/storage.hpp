@@ -17,6 +17,7 @@
 #include <cellist/shape.hpp>
 
 #include "device_state.hpp"
+#include "record_kernels.hpp"
 #include "view.hpp"
 
 namespace cellist::detail {
@@ -26,6 +27,9 @@ class UnrepeatableError : public Error {
 public:
     using Error::Error;
 };
+
+/// Whether a kernel may insert into a container.
+enum class Inserts { refused, accepted };
 
 /// How a container keeps its nodes: the buffers, and the passes of a build. One class a storage; the
 /// device's side of all of them is kernels/cellist/lists.clh.
@@ -40,18 +44,15 @@ public:
 
     /// A build is start(), then passes until review() says that the lists are complete; see build.cpp.
     /// More passes may follow, where another container needs them: they fill the lists anew.
-    void start();
-    /// Enqueues what the next run of the kernels needs; from now on kernels may insert. Does not
-    /// block.
-    void begin_pass();
+    virtual void start();
+    /// Enqueues what the next run of the kernels needs. Does not block.
+    virtual void begin_pass() { clear(); }
     /// Enqueues what follows a run of the kernels, the reading of its counters above all. True if
     /// another pass must follow that needs no review of this one. Does not block.
-    bool end_pass();
+    virtual bool end_pass() = 0;
     /// Takes the counters of the last pass into the report, and grows, stops or drops by the options.
     /// True if the lists are complete. Throws OverflowError; the caller empties the lists then. Blocks.
-    bool review(BuildReport& report);
-    /// Whether kernels may insert now: in the midst of a pass.
-    [[nodiscard]] bool is_open() const { return open_; }
+    virtual bool review(BuildReport& report) = 0;
     /// Whether a review can change the lists.
     [[nodiscard]] bool may_grow() const { return options_.overflow != Overflow::drop; }
 
@@ -83,7 +84,7 @@ public:
     [[nodiscard]] PendingRead read_late(std::array<cl_uint, 2>& words) const;
 
     /// Adds what CELLIST_LISTS declares.
-    virtual void add_to(Arguments& arguments) const;
+    virtual void add_to(Arguments& arguments, Inserts inserts = Inserts::refused) const;
 
     /// Records that surely fit.
     [[nodiscard]] std::uint64_t capacity_nodes() const { return capacity_nodes_; }
@@ -126,22 +127,17 @@ protected:
     };
     using Shards = std::vector<cellist_shard>;
 
-    ListStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
-                const Shape& shape, const ListsOptions& options, cl_uint mode,
-                std::size_t node_bytes, std::uint64_t head_words_a_cell,
+    ListStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options,
+                cl_uint mode, std::size_t node_bytes, std::uint64_t head_words_a_cell,
                 std::uint64_t more_head_words = 0);
 
-    virtual void start_anew() {}
-    virtual void prepare_pass() { clear(); }
-    virtual bool finish_pass() = 0;
-    virtual bool review_pass(BuildReport& report) = 0;
     virtual void make_whole(bool without_pool) = 0;
 
     /// What kernels see of the container.
-    [[nodiscard]] cellist_view view() const;
+    [[nodiscard]] cellist_view view(Inserts inserts) const;
     void add_to(Arguments& arguments, const Memory& nodes, const Memory& heads,
                 const cellist_view& view) const;
-    [[nodiscard]] const RecordType& record() const { return definitions_.records.back(); }
+    [[nodiscard]] const RecordType& record() const { return kernels_.record(); }
     [[nodiscard]] std::uint64_t pool_nodes_with(std::uint64_t capacity_nodes) const;
     /// Elements of the counters, thread_slots and their owners included.
     [[nodiscard]] std::uint64_t counters_with(std::uint64_t capacity_nodes) const;
@@ -180,9 +176,6 @@ protected:
     void update(BuildReport& report, const Counters& counters, std::uint64_t stored);
     /// Throws OverflowError if the policy or a limit forbids a pool of `demand` nodes.
     void require(std::uint64_t demand, const BuildReport& report) const;
-    /// A kernel of the library for this record.
-    [[nodiscard]] Kernel kernel(const std::string& name, std::string_view source,
-                                cl_uint mode) const;
 
     /// The state after a build, for a validation to compare with.
     struct Expected {
@@ -206,7 +199,7 @@ protected:
                                    const Arguments& arguments) const;
 
     MemoryOwner device_;
-    Definitions definitions_;
+    RecordKernels& kernels_;
     Shape shape_;
     ListsOptions options_;
     cl_uint mode_;
@@ -220,7 +213,6 @@ protected:
     cl_uint threshold_words_ = 0;
     std::uint32_t growths_ = 0;  ///< of this build
     Slice slice_;
-    bool open_ = false;  ///< for inserts
     Memory heads_;
     Memory nodes_;
     Memory shards_;
@@ -237,9 +229,7 @@ protected:
 }
 
 /// The storage that the options name, with empty lists. Throws Error if a size exceeds a limit.
-[[nodiscard]] std::unique_ptr<ListStorage> make_storage(std::shared_ptr<DeviceState> device,
-                                                        const Definitions& definitions,
-                                                        const Shape& shape,
+[[nodiscard]] std::unique_ptr<ListStorage> make_storage(RecordKernels& kernels, const Shape& shape,
                                                         const ListsOptions& options);
 
 }  // namespace cellist::detail

@@ -14,10 +14,9 @@ constexpr std::uint64_t thread_blocks_part = 16;
 
 }  // namespace
 
-LinkedStorage::LinkedStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
-                             const Shape& shape, const ListsOptions& options)
-    : ListStorage(std::move(device), definitions, shape, options, CELLIST_LINKED,
-                  node_layout(definitions.records.back()).size, 1) {
+LinkedStorage::LinkedStorage(RecordKernels& kernels, const Shape& shape,
+                             const ListsOptions& options)
+    : ListStorage(kernels, shape, options, CELLIST_LINKED, node_layout(kernels.record()).size, 1) {
     std::uint64_t capacity =
         options.capacity_nodes.value_or(std::max(shape.cells(), default_capacity_nodes));
     if (!options.capacity_nodes && refusal(capacity)) capacity = 0;
@@ -49,12 +48,13 @@ void LinkedStorage::clear() {
     expect_nothing();
 }
 
-bool LinkedStorage::finish_pass() {
+bool LinkedStorage::end_pass() {
     reading_ = read_counters(counters_);
     return false;
 }
 
-bool LinkedStorage::review_pass(BuildReport& report) {
+bool LinkedStorage::review(BuildReport& report) {
+    reading_.wait();
     const Counters counters = sum(counters_, thread_slots_with(capacity_nodes_));
     update(report, counters, counters.allocated);
     if (counters.dropped == 0 || options_.overflow == Overflow::drop) return true;
@@ -90,12 +90,12 @@ std::function<Validation()> LinkedStorage::validate() {
         Memory(device_.state(), (pool_nodes() + 31) / 32, sizeof zero, "validation buffer");
     check->findings.memory = memory_for_findings();
     check->reached.fill(&zero, sizeof zero, check->reached.size_bytes());
-    if (!validate_)
-        validate_.emplace(kernel("cellist_validate_linked", kernels::validate_linked_cl, mode_));
     Arguments arguments;
     add_to(arguments);
     arguments.add(check->reached.cl());
-    check->done = find(check->findings, *validate_, arguments);
+    Kernel& kernel = kernels_.get({{"validate_linked.cl", kernels::validate_linked_cl}},
+                                  "cellist_validate_linked", mode_);
+    check->done = find(check->findings, kernel, arguments);
     check->done = read_counters(check->shards);
     return [check, expected = expected_, thread_slots = thread_slots_with(capacity_nodes_)] {
         check->done.wait();

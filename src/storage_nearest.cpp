@@ -26,10 +26,9 @@ ListsOptions without_growth(ListsOptions options) {
 
 }  // namespace
 
-NearestStorage::NearestStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
-                               const Shape& shape, const ListsOptions& options)
-    : ListStorage(std::move(device), definitions, shape, without_growth(options), CELLIST_FIXED,
-                  definitions.records.back().size,
+NearestStorage::NearestStorage(RecordKernels& kernels, const Shape& shape,
+                               const ListsOptions& options)
+    : ListStorage(kernels, shape, without_growth(options), CELLIST_FIXED, kernels.record().size,
                   // One row of thresholds: more come with the ties.
                   std::uint64_t{CELLIST_ROW_LEAST} + options.storage.nearest_key()->slots + 1),
       scan_(device_, shape.cells(), 0),
@@ -48,13 +47,14 @@ void NearestStorage::clear() {
     expect_nothing();
 }
 
-void NearestStorage::start_anew() {
+void NearestStorage::start() {
+    ListStorage::start();
     selecting_ = false;
     threshold_words_ = 0;
     fill_heads(slots_, row(CELLIST_ROW_REMAINING), shape_.cells());
 }
 
-void NearestStorage::prepare_pass() {
+void NearestStorage::begin_pass() {
     clear();
     if (!selecting_) {
         prepare_threshold_pass();
@@ -87,19 +87,19 @@ void NearestStorage::prepare_threshold_pass() {
 }
 
 /// Runs one of the kernels of nearest.cl over all cells.
-void NearestStorage::run(std::optional<Kernel>& step, const char* name, const Memory* selection) {
-    if (!step) step.emplace(kernel(name, kernels::nearest_cl, CELLIST_SELECTION_PASS));
+void NearestStorage::run(const char* name, const Memory* selection) {
     Arguments arguments;
     add_to(arguments);
     if (selection != nullptr) arguments.add(selection->cl());
-    step->enqueue(Range::padded(shape_.cells()), arguments);
+    kernels_.get({{"nearest.cl", kernels::nearest_cl}}, name, CELLIST_SELECTION_PASS)
+        .enqueue(Range::padded(shape_.cells()), arguments);
 }
 
-bool NearestStorage::finish_pass() {
+bool NearestStorage::end_pass() {
     if (!selecting_) {
         reading_ = read_counters(threshold_pass_);
         mode_ = CELLIST_SELECTION_PASS;
-        run(set_thresholds_, "cellist_set_thresholds");
+        run("cellist_set_thresholds");
         ++threshold_words_;
         selecting_ = true;
         mode_ = CELLIST_FIXED;
@@ -107,7 +107,7 @@ bool NearestStorage::finish_pass() {
     }
     constexpr cl_uint zero = 0;
     selection_memory_.fill(&zero, sizeof zero, sizeof selection_);
-    run(check_selection_, "cellist_check_selection", &selection_memory_);
+    run("cellist_check_selection", &selection_memory_);
     mode_ = CELLIST_FIXED;
     reading_ = selection_memory_.read_later(&selection_, sizeof selection_);
     scan_.sum(heads_.cl(), slots_);
@@ -116,7 +116,8 @@ bool NearestStorage::finish_pass() {
     return false;
 }
 
-bool NearestStorage::review_pass(BuildReport& report) {
+bool NearestStorage::review(BuildReport& report) {
+    reading_.wait();
     const Counters chosen = sum(counters_, 0);
     update(report, chosen, kept_.sum);
     expected_->counts_hash = kept_.hash;
