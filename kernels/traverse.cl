@@ -6,8 +6,8 @@
 // The host defines CELLIST_WORD, the largest of uchar and uint that divides the record.
 #include <cellist/lists.clh>
 
-kernel void cellist_walk(CELLIST_LISTS(CELLIST_RECORD, lists), uint most,
-                         volatile global uint* found) {
+kernel void cellist_traverse(CELLIST_LISTS(CELLIST_RECORD, lists), uint most,
+                             volatile global uint* found) {
     const uint cell = get_global_id(0);
     if (cell >= cellist_cells(lists)) return;
     uint length = 0;

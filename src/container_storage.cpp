@@ -41,14 +41,14 @@ BuildReport ContainerStorage::measure(const std::function<BuildReport()>& run,
     findings.write(found.data(), sizeof found);
     Arguments arguments;
     storage_->add_to(arguments);
-    arguments.add(cl_uint{walk_most});
+    arguments.add(cl_uint{traverse_most});
     arguments.add(findings.cl());
     const bool words = kernels_.record().alignment % sizeof(cl_uint) == 0;
-    Kernel& walk =
-        kernels_.get({{"walk.cl", kernels::walk_cl}}, "cellist_walk", storage_->mode(),
+    Kernel& traverse =
+        kernels_.get({{"traverse.cl", kernels::traverse_cl}}, "cellist_traverse", storage_->mode(),
                      words ? "#define CELLIST_WORD uint\n" : "#define CELLIST_WORD uchar\n");
     const Range cells = Range::padded(storage_->cells());
-    measurement.cost.read_seconds = seconds(device, [&] { walk.enqueue(cells, arguments); });
+    measurement.cost.read_seconds = seconds(device, [&] { traverse.enqueue(cells, arguments); });
     findings.read(found.data(), sizeof found);
     measurement.longest = found[0];
     return report;
@@ -58,8 +58,7 @@ std::unique_ptr<ContainerStorage> make_container_storage(RecordKernels& kernels,
                                                          const ListsOptions& options) {
     if (options.storage == Storage::automatic)
         return std::make_unique<AutomaticStorage>(kernels, shape, options);
-    return std::make_unique<ContainerStorage>(
-        kernels, make_storage(kernels.device(), kernels.definitions(), shape, options));
+    return std::make_unique<ContainerStorage>(kernels, make_storage(kernels, shape, options));
 }
 
 }  // namespace cellist::detail
