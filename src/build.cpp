@@ -54,7 +54,8 @@ void Build::enter(Phase phase) {
             {.phase = phase, .build = phase == Phase::pending ? shared_from_this() : nullptr});
 }
 
-/// Ends the build with the exception under way, or the one given before; all containers are empty then.
+/// Ends the build with the exception under way, or the one given before; all containers are empty
+/// then.
 void Build::fail() noexcept {
     bool without_pool = false;
     if (!error_) {
@@ -163,7 +164,8 @@ void Build::take_counts(const ListsCore& lists) {
             if (bystander->lists.lock().get() == &lists) count_refused(*bystander);
 }
 
-/// Enqueues the reading of the number of inserts that the lists have refused, if the lists still exist.
+/// Enqueues the reading of the number of inserts that the lists have refused, if the lists still
+/// exist.
 void Build::count_refused(Bystander& bystander) {
     if (std::exchange(bystander.counted, true)) return;
     if (const auto lists = bystander.lists.lock())
@@ -172,7 +174,8 @@ void Build::count_refused(Bystander& bystander) {
         bystander.lists.reset();
 }
 
-/// Throws Error if lists that are not part of the build have refused inserts of its kernels. Blocks.
+/// Throws Error if lists that are not part of the build have refused inserts of its kernels.
+/// Blocks.
 void Build::check_bystanders() {
     for (const auto& bystander : std::exchange(bystanders_, {})) {
         bystander->fence.wait();

@@ -17,32 +17,32 @@ namespace cellist::detail {
 /// complete. start() enqueues the passes that need no look at the counters; finish() does the rest.
 class Build : public std::enable_shared_from_this<Build> {
 public:
-    /// Enqueues the first passes: `insert` runs the kernels that fill the containers. Throws what `insert`
-    /// throws; the containers are empty then. Throws Error if the containers cannot be built together.
-    /// Does not block.
+    /// Enqueues the first passes: `insert` runs the kernels that fill the containers. Throws what
+    /// `insert` throws; the containers are empty then. Throws Error if the containers cannot be
+    /// built together. Does not block.
     [[nodiscard]] static std::shared_ptr<Build> start(std::vector<ListsCore*> containers,
                                                       std::function<void()> insert);
     /// Completes when everything has that was enqueued so far. The build has failed if this throws.
     [[nodiscard]] cl::Event marker();
-    /// The reports, after all passes. Throws the same every time if the build failed; the containers
-    /// are empty then. Blocks.
+    /// The reports, after all passes. Throws the same every time if the build failed; the
+    /// containers are empty then. Blocks.
     const std::vector<BuildReport>& finish();
     /// Ends a pending build of containers that are about to go. Blocks.
     void abandon() noexcept;
     /// Whether finish() can change the lists.
     [[nodiscard]] bool may_change() const;
 
-    /// Call this before a kernel that takes closed lists: tells the build whose function this thread runs,
-    /// if any, which lists they are and which parameter takes their nodes.
+    /// Call this before a kernel that takes closed lists: tells the build whose function this
+    /// thread runs, if any, which lists they are and which parameter takes their nodes.
     static void give(const std::weak_ptr<const ListsCore>& lists, const std::string& parameter,
                      const std::string& kernel);
-    /// Tells the builds whose functions this thread runs that the counters of a container are about to be
-    /// cleared.
+    /// Tells the builds whose functions this thread runs that the counters of a container are about
+    /// to be cleared.
     static void take_counts(const ListsCore& lists);
 
 private:
-    /// Lists that kernels of the build take and that are not part of it. Records that they refuse would be
-    /// lost silently.
+    /// Lists that kernels of the build take and that are not part of it. Records that they refuse
+    /// would be lost silently.
     struct Bystander {
         std::weak_ptr<const ListsCore> lists;
         std::string description;

@@ -244,7 +244,8 @@ cl::Program DeviceState::build_program(const std::string& source,
                                        const std::string& options) const {
     return opencl([&] {
         cl::Program program(context, source);
-        // Not by the bindings, which ask for the log of every build, and where that fails, throw that.
+        // Not by the bindings, which ask for the log of every build, and where that fails, throw
+        // that.
         const cl_int code =
             clBuildProgram(program(), 1, &device(), options.c_str(), nullptr, nullptr);
         if (code != CL_SUCCESS)

@@ -31,9 +31,9 @@ struct DeviceState {
     /// Completes when all that was enqueued has.
     [[nodiscard]] cl::Event marker() const;
 
-    /// The program with this source and these options. Builds it unless it is among the last ones. Always
-    /// builds it if the source or the options include other files, which may have changed. Throws
-    /// OpenClError with the compiler's log. Any thread may call it.
+    /// The program with this source and these options. Builds it unless it is among the last ones.
+    /// Always builds it if the source or the options include other files, which may have changed.
+    /// Throws OpenClError with the compiler's log. Any thread may call it.
     cl::Program program(const std::string& source, const std::string& options);
 
     /// What `cellist tune` has stored of the device. Read the first time; any thread may call it.
@@ -60,8 +60,8 @@ inline void check(const char* call, cl_int code) {
 /// A count of 64 bits that kernels keep in two words.
 inline std::uint64_t wide(cl_uint low, cl_uint high) { return (std::uint64_t{high} << 32) | low; }
 
-/// Places for the threads of a device that has some (threads.clh): twice as many, so that a table of them is
-/// never crowded; a power of two.
+/// Places for the threads of a device that has some (threads.clh): twice as many, so that a table
+/// of them is never crowded; a power of two.
 inline cl_uint thread_slots_of(const DeviceInfo& device) {
     return std::bit_ceil(std::max(2 * device.compute_units, 8U));
 }

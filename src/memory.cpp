@@ -24,7 +24,8 @@ Memory::Memory(std::shared_ptr<DeviceState> state, std::uint64_t count, std::siz
                           std::to_string(element_bytes) + " bytes exceeds this device's limit of " +
                           std::to_string(limit) + " bytes per allocation");
     size_bytes_ = count * element_bytes;
-    // PoCL looks for memory at a buffer's first use, and aborts where there is none, unless it is asked to at once.
+    // PoCL looks for memory at a buffer's first use, and aborts where there is none, unless it is
+    // asked to at once.
     cl_mem_flags flags = CL_MEM_READ_WRITE;
     if ((state_->info.type & CL_DEVICE_TYPE_CPU) != 0) flags |= CL_MEM_ALLOC_HOST_PTR;
     opencl([&] {

@@ -51,8 +51,8 @@ private:
 /// The profile in a text. None unless profile_text() could have written it for this device.
 [[nodiscard]] std::optional<Profile> parse_profile(const DeviceInfo& device, std::string_view text);
 
-/// The file of a device and its driver in the user's cache directory: cellist/ in $XDG_CACHE_HOME, or
-/// in $HOME/.cache. Throws Error if neither is set to an absolute path.
+/// The file of a device and its driver in the user's cache directory: cellist/ in $XDG_CACHE_HOME,
+/// or in $HOME/.cache. Throws Error if neither is set to an absolute path.
 [[nodiscard]] std::filesystem::path profile_path(const DeviceInfo& device);
 /// The same. Makes the directory, and throws Error where no file can be written there.
 std::filesystem::path prepare_profile(const DeviceInfo& device);

@@ -20,8 +20,8 @@ bool same_layout(const RecordType& a, const RecordType& b) {
                       });
 }
 
-/// The end of a line that only exists because of a struct, or of one of its members: says so where the
-/// compiler complains.
+/// The end of a line that only exists because of a struct, or of one of its members: says so where
+/// the compiler complains.
 std::string because_of(const RecordType& record) { return "  // struct " + record.name + "\n"; }
 std::string because_of(const RecordType& record, const RecordMember& member) {
     return "  // member " + member.name + " of struct " + record.name + "\n";
@@ -55,7 +55,8 @@ std::string layout_checks(const RecordType& record) {
 /// Elements of arrays that are compared one by one: longer arrays take a loop, and compile as fast.
 constexpr std::size_t unrolled_max = 16;
 
-/// The scalars of each element of a member that is an array, after "name[i]"; none of other members.
+/// The scalars of each element of a member that is an array, after "name[i]"; none of other
+/// members.
 std::vector<std::string> element_scalars(const RecordMember& member, std::size_t& elements) {
     elements = member.extents.empty() ? 0 : std::stoul(member.extents.substr(1));
     if (elements <= unrolled_max) return {};
@@ -104,7 +105,8 @@ std::string order_definition(const RecordType& record) {
            define("global const struct " + record.name + "*", "->");
 }
 
-/// The words of a record's key for nearest.clh, and their number: those of a member, then those of all.
+/// The words of a record's key for nearest.clh, and their number: those of a member, then those of
+/// all.
 std::string words_definition(const RecordType& record) {
     std::string members = "    switch (member) {\n";
     std::string lengths = members;

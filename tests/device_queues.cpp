@@ -1,5 +1,5 @@
-// Several devices on one context, each with a queue of its own: what a kernel of one does with lists and
-// buffers of another is ordered with the other's queue.
+// Several devices on one context, each with a queue of its own: what a kernel of one does with
+// lists and buffers of another is ordered with the other's queue.
 #include <optional>
 
 #include "support/errors.hpp"

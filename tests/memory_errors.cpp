@@ -1,4 +1,5 @@
-// Users catch every lack of memory in one place: a MemoryError, or an error that out_of_memory() knows.
+// Users catch every lack of memory in one place: a MemoryError, or an error that out_of_memory()
+// knows.
 #include <initializer_list>
 
 #include "support/errors.hpp"

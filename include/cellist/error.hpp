@@ -33,8 +33,8 @@ private:
     std::string log_;
 };
 
-/// Something is larger than the memory for it: the host's, the device's largest allocation, the budget, or
-/// the pool. Thrown before any driver is asked; out_of_memory() covers the drivers, too.
+/// Something is larger than the memory for it: the host's, the device's largest allocation, the
+/// budget, or the pool. Thrown before any driver is asked; out_of_memory() covers the drivers, too.
 class MemoryError : public Error {
 public:
     using Error::Error;
@@ -54,7 +54,8 @@ private:
 };
 
 /// Whether an error means that there was not enough memory: a MemoryError, or an OpenClError with
-/// CL_MEM_OBJECT_ALLOCATION_FAILURE, CL_OUT_OF_RESOURCES or CL_OUT_OF_HOST_MEMORY. Use it in a handler:
+/// CL_MEM_OBJECT_ALLOCATION_FAILURE, CL_OUT_OF_RESOURCES or CL_OUT_OF_HOST_MEMORY. Use it in a
+/// handler:
 ///
 ///     catch (const cellist::Error& error) {
 ///         if (!cellist::out_of_memory(error)) throw;

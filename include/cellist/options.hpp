@@ -24,14 +24,15 @@ enum class Order { ascending, descending };
 enum class Storage {
     /// One pass: a node from the pool, linked to its cell. Reading follows links.
     linked,
-    /// Two passes over the same kernel, count and fill. The lists lie behind one another: reading is
-    /// fast, and the pool holds exactly the records. The kernel must insert as many records into each cell both times.
-    /// Processors under PoCL take one pass where they can, with as much memory again as linked takes.
+    /// Two passes over the same kernel, count and fill. The lists lie behind one another: reading
+    /// is fast, and the pool holds exactly the records. The kernel must insert as many records into
+    /// each cell both times. Processors under PoCL take one pass where they can, with as much
+    /// memory again as linked takes.
     counted,
     /// One pass: a number of slots for each cell. For lists that are about equally long.
     fixed,
-    /// One of the others. The first blocking builds of a container try them in turn and measure them;
-    /// the best is kept from then on. See docs/storages.md.
+    /// One of the others. The first blocking builds of a container try them in turn and measure
+    /// them; the best is kept from then on. See docs/storages.md.
     automatic,
 };
 
@@ -61,7 +62,8 @@ struct NearestKey {
 
 }  // namespace detail
 
-/// The storage of a container: an enumerator of Storage, or nearest(). Converts from and to Storage.
+/// The storage of a container: an enumerator of Storage, or nearest(). Converts from and to
+/// Storage.
 class StorageOption {
 public:
     StorageOption(Storage storage) : storage_(storage) {}
@@ -79,10 +81,11 @@ private:
     std::optional<detail::NearestKey> nearest_;
 };
 
-/// A number of slots for each cell, in which the records stay that come first by a scalar member, e.g.
-/// `nearest(&Hit::depth, 8)`. The report counts the others as dropped. Equal keys are ordered by the remaining
-/// members, so the result does not depend on timing. Takes two passes over the same kernel, and two more for
-/// each tie-breaking word that is needed. ListsOptions::overflow, capacity_nodes and slots do not apply.
+/// A number of slots for each cell, in which the records stay that come first by a scalar member,
+/// e.g. `nearest(&Hit::depth, 8)`. The report counts the others as dropped. Equal keys are ordered
+/// by the remaining members, so the result does not depend on timing. Takes two passes over the
+/// same kernel, and two more for each tie-breaking word that is needed. ListsOptions::overflow,
+/// capacity_nodes and slots do not apply.
 template <class T, class M>
 [[nodiscard]] StorageOption nearest(M T::*member, std::uint32_t slots) {
     static_assert(detail::Scalar<M>, "the nearest records are found by a scalar member");
@@ -95,13 +98,13 @@ struct ListsOptions {
     /// Nodes in the pool at first. Without it the pool starts at one node a cell, at least 65,536,
     /// under Overflow::grow; the other policies need it. Storage::fixed has no use for it.
     std::optional<std::uint64_t> capacity_nodes = {};
-    /// Slots for each cell in Storage::fixed at first: 4 under Overflow::grow, which raises it to the
-    /// longest list; the other policies need it.
+    /// Slots for each cell in Storage::fixed at first: 4 under Overflow::grow, which raises it to
+    /// the longest list; the other policies need it.
     std::optional<std::uint32_t> slots = {};
-    /// Device memory that heads, nodes and counters may take together, and what sorts and builds keep
-    /// of any length. The fixed state of a sort, some 60 bytes, comes on top.
+    /// Device memory that heads, nodes and counters may take together, and what sorts and builds
+    /// keep of any length. The fixed state of a sort, some 60 bytes, comes on top.
     std::uint64_t budget_bytes = std::numeric_limits<std::uint64_t>::max();
-    /// For Storage::automatic: how often kernels walk all lists after each build.
+    /// For Storage::automatic: how often kernels read all lists after each build.
     std::uint32_t expected_reads = 1;
 };
 

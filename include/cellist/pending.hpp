@@ -8,8 +8,8 @@
 
 namespace cellist {
 
-/// A result of type T that the device is working on. The Lists or Buffer object that returned it may be
-/// destroyed before get(). Movable, not copyable.
+/// A result of type T that the device is working on. The Lists or Buffer object that returned it
+/// may be destroyed before get(). Movable, not copyable.
 template <class T>
 class Pending {
 public:

@@ -33,8 +33,8 @@ struct SortKey {
     friend auto operator<=>(const SortKey&, const SortKey&) = default;
 };
 
-/// What a container is doing. Build moves its containers from ready to building, pending and back, or to
-/// failed; ListsCore does the rest.
+/// What a container is doing. Build moves its containers from ready to building, pending and back,
+/// or to failed; ListsCore does the rest.
 enum class Phase {
     ready,     ///< the lists are complete
     building,  ///< kernels insert, or the build reviews what they inserted
@@ -51,8 +51,8 @@ struct BuildState {
 };
 
 /// Lists without the record's C++ type: a storage, and the kernels that read and sort any storage.
-/// The kernels see the record by its name in OpenCL C. Does not move in memory: a pending build refers
-/// to it.
+/// The kernels see the record by its name in OpenCL C. Does not move in memory: a pending build
+/// refers to it.
 class ListsCore : public std::enable_shared_from_this<ListsCore> {
 public:
     ListsCore(std::shared_ptr<DeviceState> device, Definitions definitions, const Shape& shape,
@@ -85,17 +85,17 @@ public:
     /// Enqueues the reading of every list's length; `lengths` has them when it has arrived.
     [[nodiscard]] PendingRead read_lengths(std::vector<cl_uint>& lengths) const;
 
-    /// Enqueues the reading of all lists: cells + 1 offsets, and the records. `allocate` takes the most
-    /// records that there can be, and returns where they go. Blocks where there are too many records to
-    /// copy at once, and for a pending build that may still change the lists.
+    /// Enqueues the reading of all lists: cells + 1 offsets, and the records. `allocate` takes the
+    /// most records that there can be, and returns where they go. Blocks where there are too many
+    /// records to copy at once, and for a pending build that may still change the lists.
     void download(ReadbackFence& done, std::vector<cl_uint>& offsets,
                   const std::function<void*(std::uint64_t)>& allocate) const;
 
-    /// Enqueues the writing of cells + 1 offsets, calls `allocate` with the most records there can be,
-    /// and enqueues the copy of a value of each record to the buffer that it returns, one list after the
-    /// other. `declaration` declares a variable for a value in OpenCL C. `member`, appended to a record,
-    /// selects the value, e.g. ".depth"; it is empty for the whole record. Blocks for a pending build
-    /// that may still change the lists.
+    /// Enqueues the writing of cells + 1 offsets, calls `allocate` with the most records there can
+    /// be, and enqueues the copy of a value of each record to the buffer that it returns, one list
+    /// after the other. `declaration` declares a variable for a value in OpenCL C. `member`,
+    /// appended to a record, selects the value, e.g. ".depth"; it is empty for the whole record.
+    /// Blocks for a pending build that may still change the lists.
     void pack(const cl::Buffer& offsets,
               const std::function<const cl::Buffer&(std::uint64_t)>& allocate,
               const std::string& declaration, const std::string& member) const;
@@ -110,12 +110,14 @@ public:
     /// The mode in which the lists are read, as in view.h.
     [[nodiscard]] unsigned mode() const;
 
-    /// Adds what CELLIST_LISTS declares. Blocks for a pending build that may still change the lists.
+    /// Adds what CELLIST_LISTS declares. Blocks for a pending build that may still change the
+    /// lists.
     void add_to(Arguments& arguments) const;
 
     /// Completes when all that was enqueued has.
     [[nodiscard]] cl::Event marker() const;
-    /// Ends a pending build, and empties failed lists. Throws what the build throws, or what still fails.
+    /// Ends a pending build, and empties failed lists. Throws what the build throws, or what still
+    /// fails.
     void make_ready() const;
     /// The same, unless commands that are enqueued next find complete lists anyway.
     void make_ready_for_commands() const;
@@ -126,7 +128,8 @@ public:
 
     /// Whether kernels may insert.
     [[nodiscard]] bool is_building() const { return state_.phase == Phase::building; }
-    /// Enqueues the reading of the number of inserts that were refused outside a build: low and high word.
+    /// Enqueues the reading of the number of inserts that were refused outside a build: low and
+    /// high word.
     [[nodiscard]] PendingRead read_late(std::array<cl_uint, 2>& words) const;
     /// E.g. "lists of Hit of shape 17 x 3".
     [[nodiscard]] std::string description() const;
@@ -136,8 +139,8 @@ public:
 
     // For Build.
     void enter(BuildState state) { state_ = std::move(state); }
-    /// The lists are failed, and empty if the device still works. `without_pool` gives the memory of the
-    /// nodes back; the next build grows anew.
+    /// The lists are failed, and empty if the device still works. `without_pool` gives the memory
+    /// of the nodes back; the next build grows anew.
     void fail(bool without_pool) noexcept;
 
 private:
