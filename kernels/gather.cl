@@ -1,5 +1,4 @@
-// Copies a value of each record of a range of lists into one array, one list behind the other, in the
-// order of the lists.
+// Copies a value of each record of a range of lists into one array, in the order of the lists.
 //
 //   offsets   cells + 1          where each list goes, counted from the first list of all
 //   values    offsets[end] - offsets[begin]   out

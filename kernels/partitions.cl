@@ -1,9 +1,9 @@
-// Moves records from partitions of the cells into lists that lie behind one another. An insert in mode
-// PARTITIONED has left each record in a block of its thread for the partition of its cell, with the cell behind
-// it: see view.h. A partition is counted and then moved while a core's cache holds it. After Polychroniou and
+// Moves records from partitions of the cells into contiguous lists. An insert in mode PARTITIONED has left
+// each record in a block of its thread for the partition of its cell, with the cell after it: see
+// counted.clh. A partition is counted and then moved while a core's cache holds it. After Polychroniou and
 // Ross, "A Comprehensive Study of Main-Memory Partitioning", SIGMOD 2014.
 //
-//   hands           owners, as in view.h
+//   thread_slots    of the view of the insert
 //   partitioned     what was the heads of the insert
 //   starts          1 + partitions   the number of records; then where the lists of each partition begin
 //
@@ -14,18 +14,18 @@
 #define CELLIST_NODE_OF_EXPANDED(T) cellist_node_##T
 
 static inline global const cellist_cursor* cellist_cursors(global const uint* partitioned,
-                                                           uint hands) {
-    return (global const cellist_cursor*)&partitioned[2 * (ulong)hands];
+                                                           uint thread_slots) {
+    return (global const cellist_cursor*)&partitioned[2 * (ulong)thread_slots];
 }
 
 // One work-item.
-kernel void cellist_partition_starts(global const uint* partitioned, uint hands, uint partitions,
-                                     global uint* starts) {
-    global const cellist_cursor* cursors = cellist_cursors(partitioned, hands);
+kernel void cellist_partition_starts(global const uint* partitioned, uint thread_slots,
+                                     uint partitions, global uint* starts) {
+    global const cellist_cursor* cursors = cellist_cursors(partitioned, thread_slots);
     for (uint partition = 0; partition < partitions; ++partition) starts[1 + partition] = 0;
-    for (uint hand = 0; hand < hands; ++hand)
+    for (uint slot = 0; slot < thread_slots; ++slot)
         for (uint partition = 0; partition < partitions; ++partition) {
-            const cellist_cursor cursor = cursors[(ulong)hand * partitions + partition];
+            const cellist_cursor cursor = cursors[(ulong)slot * partitions + partition];
             starts[1 + partition] +=
                 cursor.blocks * CELLIST_BLOCK_NODES - (cursor.last - cursor.node);
         }
@@ -38,11 +38,11 @@ kernel void cellist_partition_starts(global const uint* partitioned, uint hands,
     starts[0] = at;
 }
 
-// Calls `use` with each node of `partition`: blocks from the last to the first, of one thread after the other. Takes
-// the variables of cellist_move_partition.
+// Calls `use` with each node of `partition`: blocks from the last to the first, of one thread after the
+// other. Takes the variables of cellist_move_partition.
 #define CELLIST_FOR_EACH_PARTITIONED(use)                                                          \
-    for (uint hand = 0; hand < hands; ++hand) {                                                    \
-        const cellist_cursor cursor = cursors[(ulong)hand * partitions + partition];               \
+    for (uint slot = 0; slot < thread_slots; ++slot) {                                             \
+        const cellist_cursor cursor = cursors[(ulong)slot * partitions + partition];               \
         uint block = cursor.block;                                                                 \
         uint length = CELLIST_BLOCK_NODES - (cursor.last - cursor.node);                           \
         for (uint left = cursor.blocks; left > 0; --left) {                                        \
@@ -58,21 +58,21 @@ kernel void cellist_partition_starts(global const uint* partitioned, uint hands,
 #define CELLIST_COUNT(node) ++counts[node->next]
 #define CELLIST_MOVE(node) cellist_get(lists, counts[node->next]++) = node->record
 
-// One work-item a partition. Writes nothing where the pool has no room for all records. Counts serve as the places
-// where records go to in between.
+// One work-item a partition. Writes nothing where the pool has no room for all records. In between, the
+// counts hold the addresses where records go.
 kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cellist_move_partition(
     CELLIST_LISTS(CELLIST_RECORD, lists),
     global const CELLIST_NODE_OF(CELLIST_RECORD) * restrict nodes,
-    global const uint* restrict partitioned, uint hands, uint partition_bits,
+    global const uint* restrict partitioned, uint thread_slots, uint partition_bits,
     global const uint* restrict starts) {
     const cellist_view lists_view = cellist_view_of(lists);
     const uint partition = get_global_id(0);
     const uint partitions = get_global_size(0);
     if (starts[0] > lists_view.capacity_nodes) return;
-    global const cellist_cursor* cursors = cellist_cursors(partitioned, hands);
-    global const uint* chain = (global const uint*)&cursors[(ulong)hands * partitions];
+    global const cellist_cursor* cursors = cellist_cursors(partitioned, thread_slots);
+    global const uint* chain = (global const uint*)&cursors[(ulong)thread_slots * partitions];
     global uint* heads = (global uint*)lists_heads;
-    global uint* counts = &heads[(ulong)lists_view.cells + 1];
+    global uint* counts = (global uint*)cellist_cell_count(lists_heads, lists_view, 0);
     const uint first = partition << partition_bits;
     const uint end = min(lists_view.cells - first, 1u << partition_bits) + first;
 
@@ -89,8 +89,8 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cellist_move_partitio
     // Records go to any place of the partition. Its cache lines are fetched in order first.
     volatile global const uchar* line =
         (volatile global const uchar*)&cellist_get(lists, starts[1 + partition]);
-    volatile global const uchar* behind = (volatile global const uchar*)&cellist_get(lists, at);
-    for (; line < behind; line += CELLIST_LINE_BYTES) *line;
+    volatile global const uchar* end_line = (volatile global const uchar*)&cellist_get(lists, at);
+    for (; line < end_line; line += CELLIST_LINE_BYTES) *line;
     CELLIST_FOR_EACH_PARTITIONED(CELLIST_MOVE)
     for (uint cell = first; cell < end; ++cell) counts[cell] -= heads[cell];
 }

@@ -3,7 +3,7 @@
 // The order is that of cellist_sort_key(record), then that of the record's scalars. The host defines
 //
 //   CELLIST_SORT_KEY_BITS   32 or 64, what the key needs
-//   CELLIST_SORT_SLOTS      records that are ranked together, a power of two up to 256
+//   CELLIST_SORT_CHUNK_SIZE  records that are ranked together, a power of two up to 256
 //   CELLIST_SORT_WIDTH      records that a work-item ranks at once: 4, 8 or 16, at most the slots
 //   CELLIST_SORT_TEAM       work-items that sort a list, a power of two
 //   CELLIST_SORT_ITEMS      work-items that sort together, a power of two. More than one are a
@@ -38,14 +38,14 @@ typedef ulong cellist_sort_bits;
 #define cellist_sort_item() ((uint)get_local_id(0))
 #define cellist_sort_barrier() barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE)
 // Neighbouring lists begin in different banks of local memory.
-#define CELLIST_SORT_STRIDE (CELLIST_SORT_SLOTS + 1)
+#define CELLIST_SORT_STRIDE (CELLIST_SORT_CHUNK_SIZE + 1)
 static inline uint cellist_sort_add(local uint* sum, uint value) { return atomic_add(sum, value); }
 #else
 #define CELLIST_SORT_KERNEL kernel void
 #define CELLIST_SORT_SHARED
 #define cellist_sort_item() 0u
 #define cellist_sort_barrier()
-#define CELLIST_SORT_STRIDE CELLIST_SORT_SLOTS
+#define CELLIST_SORT_STRIDE CELLIST_SORT_CHUNK_SIZE
 static inline uint cellist_sort_add(uint* sum, uint value) {
     *sum += value;
     return *sum - value;
@@ -76,12 +76,12 @@ typedef cellist_sort_node cellist_sort_piece;
 #endif
 #define CELLIST_SORT_PIECES (sizeof(cellist_sort_node) / sizeof(cellist_sort_piece))
 
-// The link of the node at `at` in a list that lies in one piece; `last` is the place of the last node.
+// The link of the node at `at` in a contiguous list; `last` is the address of the last node.
 static inline uint cellist_sort_link(uint at, uint last) {
     return at < last ? at + 1 : CELLIST_NONE;
 }
 
-// Copies a node to its place in a list that lies in one piece.
+// Copies a node to its place in a contiguous list.
 static inline void cellist_sort_store(global cellist_sort_node* nodes, uint at, uint last,
                                       global const cellist_sort_node* node) {
 #if CELLIST_MODES != CELLIST_LINKED
@@ -125,17 +125,23 @@ static inline void cellist_sort_leave(global uint* longer, uint longer_end, uint
         atomic_inc(&state->broken);
 }
 
+// Whether record a, with key x, comes before record b, with key y.
+static inline uint cellist_sort_before(global const struct CELLIST_RECORD* a, cellist_sort_bits x,
+                                       global const struct CELLIST_RECORD* b, cellist_sort_bits y) {
+    return x != y ? x < y : cellist_record_before(a, b, 0);
+}
+
 // For each of CELLIST_SORT_WIDTH keys, from the one `at` on, how many of `length` keys are less.
 static inline void cellist_sort_count(CELLIST_SORT_SHARED const cellist_sort_bits* keys,
-                                      uint length, uint at, uint* places) {
+                                      uint length, uint at, uint* ranks) {
 #if CELLIST_SORT_ITEMS > 1
     cellist_sort_bits own[CELLIST_SORT_WIDTH];
     for (uint j = 0; j < CELLIST_SORT_WIDTH; ++j) {
         own[j] = keys[at + j];
-        places[j] = 0;
+        ranks[j] = 0;
     }
     for (uint i = 0; i < length; ++i)
-        for (uint j = 0; j < CELLIST_SORT_WIDTH; ++j) places[j] += keys[i] < own[j];
+        for (uint j = 0; j < CELLIST_SORT_WIDTH; ++j) ranks[j] += keys[i] < own[j];
 #else
     typedef CELLIST_SORT_PASTE(CELLIST_SORT_VECTOR_OF_BITS, CELLIST_SORT_WIDTH) vector_of_bits;
     typedef CELLIST_SORT_PASTE(CELLIST_SORT_VECTOR_OF_COUNTS, CELLIST_SORT_WIDTH) vector_of_counts;
@@ -144,26 +150,26 @@ static inline void cellist_sort_count(CELLIST_SORT_SHARED const cellist_sort_bit
     // A comparison of vectors that holds is -1.
     for (uint i = 0; i < length; ++i) before -= (vector_of_bits)keys[i] < own;
     CELLIST_SORT_PASTE(vstore, CELLIST_SORT_WIDTH)
-    (CELLIST_SORT_PASTE(convert_uint, CELLIST_SORT_WIDTH)(before), 0, places);
+    (CELLIST_SORT_PASTE(convert_uint, CELLIST_SORT_WIDTH)(before), 0, ranks);
 #endif
 }
 
 // What one of CELLIST_SORT_TEAM work-items does to rank the records of a list: it has every
 // CELLIST_SORT_TEAM-th run of CELLIST_SORT_WIDTH records.
-#define CELLIST_SORT_RUNS (CELLIST_SORT_SLOTS / (CELLIST_SORT_TEAM * CELLIST_SORT_WIDTH))
+#define CELLIST_SORT_RUNS (CELLIST_SORT_CHUNK_SIZE / (CELLIST_SORT_TEAM * CELLIST_SORT_WIDTH))
 #define cellist_sort_each_run(n, at, member, length)                                               \
     for (uint n = 0, at = (member)*CELLIST_SORT_WIDTH; n < CELLIST_SORT_RUNS && at < (length);     \
          ++n, at += CELLIST_SORT_TEAM * CELLIST_SORT_WIDTH)
 
-// Finds the places of a work-item's records by their keys, and returns the sum of these places. The sums
+// Finds the ranks of a work-item's records by their keys, and returns the sum of these ranks. The sums
 // over all records add up to length * (length - 1) / 2, or to less if keys are equal.
 static inline uint cellist_sort_rank(CELLIST_SORT_SHARED const cellist_sort_bits* keys, uint length,
-                                     uint member, uint* places) {
+                                     uint member, uint* ranks) {
     uint sum = 0;
     cellist_sort_each_run(n, at, member, length) {
-        cellist_sort_count(keys, length, at, places + n * CELLIST_SORT_WIDTH);
+        cellist_sort_count(keys, length, at, ranks + n * CELLIST_SORT_WIDTH);
         for (uint i = 0; i < CELLIST_SORT_WIDTH && at + i < length; ++i)
-            sum += places[n * CELLIST_SORT_WIDTH + i];
+            sum += ranks[n * CELLIST_SORT_WIDTH + i];
     }
     return sum;
 }
@@ -173,12 +179,12 @@ static inline int cellist_sort_unique(uint sum, uint length) {
     return sum == length * (length - 1u) / 2u;
 }
 
-// Writes what cellist_sort_rank has found: order[place] is the record.
-static inline void cellist_sort_order(const uint* places, uint length, uint member,
+// Writes what cellist_sort_rank has found: order[rank] is the record.
+static inline void cellist_sort_order(const uint* ranks, uint length, uint member,
                                       CELLIST_SORT_SHARED uchar* order) {
     cellist_sort_each_run(n, at, member, length) {
         for (uint i = 0; i < CELLIST_SORT_WIDTH && at + i < length; ++i)
-            order[places[n * CELLIST_SORT_WIDTH + i]] = (uchar)(at + i);
+            order[ranks[n * CELLIST_SORT_WIDTH + i]] = (uchar)(at + i);
     }
 }
 
@@ -193,16 +199,16 @@ static void cellist_sort_order_equal(global const cellist_sort_node* nodes, uint
             const cellist_sort_bits key = keys[i];
             global const struct CELLIST_RECORD* own =
                 &cellist_sort_record(nodes[first + (index ? index[i] : i)]);
-            uint place = 0;
+            uint rank = 0;
             for (uint j = 0; j < length; ++j) {
-                place += keys[j] < key;
+                rank += keys[j] < key;
                 if (keys[j] != key || j == i) continue;
                 global const struct CELLIST_RECORD* other =
                     &cellist_sort_record(nodes[first + (index ? index[j] : j)]);
-                place += cellist_record_before(other, own, 0) ||
-                         (j < i && !cellist_record_before(own, other, 0));
+                rank += cellist_record_before(other, own, 0) ||
+                        (j < i && !cellist_record_before(own, other, 0));
             }
-            order[place] = (uchar)i;
+            order[rank] = (uchar)i;
         }
     }
 }
@@ -213,15 +219,15 @@ static inline void cellist_sort_permute(global cellist_sort_node* nodes, uint fi
                                         uint length, uint member,
                                         CELLIST_SORT_SHARED const uchar* order) {
     global cellist_sort_piece* pieces = (global cellist_sort_piece*)(nodes + first);
-    cellist_sort_piece moved[CELLIST_SORT_SLOTS / CELLIST_SORT_TEAM];
+    cellist_sort_piece moved[CELLIST_SORT_CHUNK_SIZE / CELLIST_SORT_TEAM];
     for (uint piece = 0; piece < CELLIST_SORT_PIECES; ++piece) {
-        for (uint i = 0; i < CELLIST_SORT_SLOTS / CELLIST_SORT_TEAM; ++i) {
+        for (uint i = 0; i < CELLIST_SORT_CHUNK_SIZE / CELLIST_SORT_TEAM; ++i) {
             const uint at = member + i * CELLIST_SORT_TEAM;
             if (at >= length) break;
             moved[i] = pieces[(ulong)order[at] * CELLIST_SORT_PIECES + piece];
         }
         cellist_sort_barrier();
-        for (uint i = 0; i < CELLIST_SORT_SLOTS / CELLIST_SORT_TEAM; ++i) {
+        for (uint i = 0; i < CELLIST_SORT_CHUNK_SIZE / CELLIST_SORT_TEAM; ++i) {
             const uint at = member + i * CELLIST_SORT_TEAM;
             if (at >= length) break;
 #if CELLIST_MODES == CELLIST_LINKED && !defined(CELLIST_SORT_PIECE)

@@ -3,21 +3,15 @@
 //
 // Linked lists: bottom-up merge sort of the list itself. pending[i] is a sorted list of 2^i nodes or
 // none, and taking a node in works like adding one to a binary number, each carry merging two lists of
-// equal size. Every loop ends whatever the links are. Lists in one piece: heap sort.
+// equal size. Every loop ends whatever the links are. Contiguous lists: heap sort.
 //
 //   cells   count   the cells to sort; all, from 0 on, if `listed` is 0
-
-// Whether record a, with key x, comes before record b, with key y.
-static inline int cellist_sort_before(global const struct CELLIST_RECORD* a, cellist_sort_bits x,
-                                      global const struct CELLIST_RECORD* b, cellist_sort_bits y) {
-    return x != y ? x < y : cellist_record_before(a, b, 0);
-}
 
 #if CELLIST_MODES == CELLIST_LINKED
 
 // Merges two sorted lists of up to `most` nodes together.
-static inline uint cellist_sort_merge(CELLIST_LISTS(CELLIST_RECORD, lists), uint a, uint b,
-                                      ulong most) {
+static inline uint cellist_sort_merge_lists(CELLIST_LISTS(CELLIST_RECORD, lists), uint a, uint b,
+                                            ulong most) {
     const cellist_view lists_view = cellist_view_of(lists);
     uint first = CELLIST_NONE;
     uint last = CELLIST_NONE;
@@ -56,7 +50,8 @@ static inline void cellist_sort_cell(CELLIST_LISTS(CELLIST_RECORD, lists), uint 
         lists_nodes[node].next = CELLIST_NONE;
         uint level = 0;
         for (; level < used && pending[level] != CELLIST_NONE; ++level) {
-            node = cellist_sort_merge(CELLIST_PASS(lists), pending[level], node, 2ul << level);
+            node =
+                cellist_sort_merge_lists(CELLIST_PASS(lists), pending[level], node, 2ul << level);
             pending[level] = CELLIST_NONE;
         }
         if (level == used) ++used;
@@ -67,17 +62,18 @@ static inline void cellist_sort_cell(CELLIST_LISTS(CELLIST_RECORD, lists), uint 
     uint sorted = CELLIST_NONE;
     for (uint level = 0; level < used; ++level) {
         if (pending[level] == CELLIST_NONE) continue;
-        sorted = sorted == CELLIST_NONE ? pending[level]
-                                        : cellist_sort_merge(CELLIST_PASS(lists), pending[level],
-                                                             sorted, 2ul << level);
+        sorted = sorted == CELLIST_NONE
+                     ? pending[level]
+                     : cellist_sort_merge_lists(CELLIST_PASS(lists), pending[level], sorted,
+                                                2ul << level);
     }
     lists_heads[cell] = sorted;
 }
 
 #else
 
-static inline int cellist_sort_first(global const struct CELLIST_RECORD* a,
-                                     global const struct CELLIST_RECORD* b) {
+static inline int cellist_sort_is_first(global const struct CELLIST_RECORD* a,
+                                        global const struct CELLIST_RECORD* b) {
     return cellist_sort_before(a, cellist_sort_key(a), b, cellist_sort_key(b));
 }
 
@@ -96,8 +92,9 @@ static inline void cellist_sort_swap(global struct CELLIST_RECORD* a,
 static inline void cellist_sort_sift(global struct CELLIST_RECORD* records, uint at, uint length) {
     while (at < length / 2) {
         uint child = 2 * at + 1;
-        if (child + 1 < length && cellist_sort_first(&records[child], &records[child + 1])) ++child;
-        if (!cellist_sort_first(&records[at], &records[child])) break;
+        if (child + 1 < length && cellist_sort_is_first(&records[child], &records[child + 1]))
+            ++child;
+        if (!cellist_sort_is_first(&records[at], &records[child])) break;
         cellist_sort_swap(&records[at], &records[child]);
         at = child;
     }

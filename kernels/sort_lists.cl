@@ -1,8 +1,8 @@
-// Sorts lists of up to CELLIST_SORT_SLOTS nodes; see sort.cl.
+// Sorts lists of up to CELLIST_SORT_CHUNK_SIZE nodes; see sort.cl.
 //
-// Linked lists move to another pool, one behind the other in any order, each in one piece: writing whole
-// nodes in a row takes less time than writing a link here and there, and so does reading them later.
-// The old pool and its heads stay as they are. Lists in one piece are sorted in their places.
+// Linked lists move to another pool, where each is contiguous, in any order: writing whole nodes in a row
+// takes less time than writing a link here and there, and so does reading them later. The old pool and its
+// heads stay as they are. Contiguous lists are sorted in place.
 //
 //   cells     count    the cells to sort; all, from 0 on, if `listed` is 0
 //   longer    longer_end   out: cells with longer lists, as many as state->longer[stage] says
@@ -61,7 +61,7 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
         lengths[i] = 0;
     }
     // One node of each list at a time: a work-item waits for all of its lists together.
-    for (uint step = 0; step < CELLIST_SORT_SLOTS; ++step) {
+    for (uint step = 0; step < CELLIST_SORT_CHUNK_SIZE; ++step) {
         uint more = 0;
         for (uint i = item; i < own; i += CELLIST_SORT_ITEMS) {
             const uint node = next[i];
@@ -115,7 +115,7 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
             first = cellist_begin(lists_heads, lists_view, cell);
             length = cellist_sort_length(lists_heads, lists_view, cell);
             const int is_broken = cellist_sort_is_broken(lists_heads, lists_view, cell);
-            if (length > CELLIST_SORT_SLOTS) {
+            if (length > CELLIST_SORT_CHUNK_SIZE) {
                 length = 0;
                 if (member == 0) cellist_sort_leave(longer, longer_end, stage, cell, state);
             }
@@ -126,15 +126,15 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
             keys[row + i] = cellist_sort_key(&cellist_sort_record(own_nodes[first + i]));
 #endif
         cellist_sort_barrier();
-        uint places[CELLIST_SORT_RUNS * CELLIST_SORT_WIDTH];
+        uint ranks[CELLIST_SORT_RUNS * CELLIST_SORT_WIDTH];
         if (length > 0)
-            cellist_sort_add(&sums[list], cellist_sort_rank(keys + row, length, member, places));
+            cellist_sort_add(&sums[list], cellist_sort_rank(keys + row, length, member, ranks));
 #if CELLIST_SORT_ITEMS > 1
         if (member == 0 && length > 0) atomic_inc(&in_class[cellist_sort_class(length)]);
 #endif
         cellist_sort_barrier();
         if (length > 0 && cellist_sort_unique(sums[list], length))
-            cellist_sort_order(places, length, member, order + row);
+            cellist_sort_order(ranks, length, member, order + row);
         else
 #if CELLIST_MODES == CELLIST_LINKED
             cellist_sort_order_equal(own_nodes, 0, index + row, keys + row, length, member,

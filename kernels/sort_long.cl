@@ -1,60 +1,62 @@
-// Sorts long lists with all work-items together: chunks of CELLIST_SORT_SLOTS nodes are ranked, then
+// Sorts long lists with all work-items together: chunks of CELLIST_SORT_CHUNK_SIZE nodes are ranked, then
 // merged in passes between two pools. See sort.cl.
 //
-// Linked lists are copied to another pool first, each in one piece. They are walked in parallel: some
-// nodes are splitters, one in each 2^CELLIST_SORT_PART_BITS nodes of the pool, at a place that depends
-// on a hash, and a list consists of parts, each from the head or a splitter to the next splitter
+// Linked lists are copied to another pool first, each contiguous there. They are traversed in parallel: some
+// nodes are splitters, one in each 2^CELLIST_SORT_SEGMENT_BITS nodes of the pool, at a place that depends
+// on a hash. A list consists of segments, each from the head or a splitter to the next splitter
 // (Helman, JaJa: "Designing Practical Efficient Algorithms for Symmetric Multiprocessors", ALENEX
 // 1999, section 4).
 //
-//   longer   lists                the cells
-//   parts    splitters + lists    a part's nodes, and the part behind it or CELLIST_NONE; the last
-//                                 ones begin at the heads
-//   places   splitters + lists    the list of a part or CELLIST_NONE, and its nodes before the part
-//   longs    lists                where each list is
-//   owners   owners_end           the list of each chunk
-//   heads    cells                heads of the lists that move
-//   nodes    capacity_nodes       their nodes
-//   from, to capacity_nodes       the pools; every second pass goes from the one that holds the lists to
-//                                 the other
-//   keys     capacity_nodes       the key of each node of the lists, if CELLIST_SORT_KEEPS_KEYS is not 0;
-//                                 keys_from and keys_to go with the pools. Work-items that merge parts of
-//                                 a list must agree on where these end: an expression whose value changes
-//                                 from call to call is evaluated once a record
+//   longer        lists                the cells
+//   segments      splitters + lists    a segment's nodes, and the next segment or CELLIST_NONE; the last
+//                                      ones begin at the heads
+//   offsets       splitters + lists    the list of a segment or CELLIST_NONE, and its nodes before the
+//                                      segment
+//   long_lists    lists                where each list is
+//   chunk_owners  chunks_max           the list of each chunk
+//   heads         cells                heads of the lists that move
+//   nodes         capacity_nodes       their nodes
+//   from, to      capacity_nodes       the pools; every second pass goes from the one that holds the lists
+//                                      to the other
+//   keys          capacity_nodes       the key of each node of the lists, if CELLIST_SORT_KEEPS_KEYS is not
+//                                      0; keys_from and keys_to go with the pools. Work-items that merge
+//                                      parts of a list must agree on where these end: an expression whose
+//                                      value changes from call to call is evaluated once a record
 //
-// A list that lies in one piece stays a list between any two of these kernels. Every loop is bounded, and
-// no link leads outside of the pool, whatever the links are.
+// A contiguous list stays a list between any two of these kernels. Every loop is bounded, and no link leads
+// outside of the pool, whatever the links are.
 
-// The part behind a part that is too long: a part of a sound list is so long once in e^64 times.
+// Stands for the next segment where one is too long: a segment of a sound list is so long once in e^64 times.
 #define CELLIST_SORT_BROKEN (CELLIST_NONE - 1u)
-#define CELLIST_SORT_PART_MAX (64u << CELLIST_SORT_PART_BITS)
+#define CELLIST_SORT_SEGMENT_MAX (64u << CELLIST_SORT_SEGMENT_BITS)
 
 #if CELLIST_MODES == CELLIST_LINKED
 
 static inline uint cellist_sort_splitters(const cellist_view view) {
-    return view.capacity_nodes >> CELLIST_SORT_PART_BITS;
+    return view.capacity_nodes >> CELLIST_SORT_SEGMENT_BITS;
 }
 
-static inline uint cellist_sort_splitter(uint part) {
-    const uint hash = part * 0x9E3779B1u >> (32u - CELLIST_SORT_PART_BITS);
-    return (part << CELLIST_SORT_PART_BITS) + hash;
+static inline uint cellist_sort_splitter(uint segment) {
+    const uint hash = segment * 0x9E3779B1u >> (32u - CELLIST_SORT_SEGMENT_BITS);
+    return (segment << CELLIST_SORT_SEGMENT_BITS) + hash;
 }
 
 static inline int cellist_sort_is_splitter(const cellist_view view, uint node) {
-    const uint part = node >> CELLIST_SORT_PART_BITS;
-    return part < cellist_sort_splitters(view) && node == cellist_sort_splitter(part);
+    const uint segment = node >> CELLIST_SORT_SEGMENT_BITS;
+    return segment < cellist_sort_splitters(view) && node == cellist_sort_splitter(segment);
 }
 
-static inline uint cellist_sort_part_begin(CELLIST_LISTS(CELLIST_RECORD, lists),
-                                           global const uint* longer, uint part) {
+static inline uint cellist_sort_segment_begin(CELLIST_LISTS(CELLIST_RECORD, lists),
+                                              global const uint* longer, uint segment) {
     const cellist_view lists_view = cellist_view_of(lists);
     const uint splitters = cellist_sort_splitters(lists_view);
-    return part < splitters ? cellist_sort_splitter(part) : lists_heads[longer[part - splitters]];
+    return segment < splitters ? cellist_sort_splitter(segment)
+                               : lists_heads[longer[segment - splitters]];
 }
 
-// How long each part is. A work-item walks CELLIST_SORT_LISTS parts at a time.
+// How long each segment is. A work-item traverses CELLIST_SORT_LISTS segments at a time.
 kernel void cellist_sort_measure(CELLIST_LISTS(CELLIST_RECORD, lists), global const uint* longer,
-                                 uint count, global uint2* parts) {
+                                 uint count, global uint2* segments) {
     const cellist_view lists_view = cellist_view_of(lists);
     const uint splitters = cellist_sort_splitters(lists_view);
     const ulong end = (ulong)splitters + count;
@@ -64,12 +66,12 @@ kernel void cellist_sort_measure(CELLIST_LISTS(CELLIST_RECORD, lists), global co
     uint next[CELLIST_SORT_LISTS];
     uint lengths[CELLIST_SORT_LISTS];
     for (uint i = 0; i < own; ++i) {
-        const uint part = (uint)begin + i;
-        next[i] = cellist_sort_part_begin(CELLIST_PASS(lists), longer, part);
-        lengths[i] = part < splitters;
-        if (part < splitters) next[i] = lists_nodes[next[i]].next;
+        const uint segment = (uint)begin + i;
+        next[i] = cellist_sort_segment_begin(CELLIST_PASS(lists), longer, segment);
+        lengths[i] = segment < splitters;
+        if (segment < splitters) next[i] = lists_nodes[next[i]].next;
     }
-    for (uint step = 0; step < CELLIST_SORT_PART_MAX; ++step) {
+    for (uint step = 0; step < CELLIST_SORT_SEGMENT_MAX; ++step) {
         uint more = 0;
         for (uint i = 0; i < own; ++i) {
             const uint node = next[i];
@@ -82,30 +84,30 @@ kernel void cellist_sort_measure(CELLIST_LISTS(CELLIST_RECORD, lists), global co
         if (!more) break;
     }
     for (uint i = 0; i < own; ++i) {
-        uint behind = CELLIST_NONE;
+        uint after = CELLIST_NONE;
         if (next[i] < lists_view.capacity_nodes)
-            behind = cellist_sort_is_splitter(lists_view, next[i])
-                         ? next[i] >> CELLIST_SORT_PART_BITS
-                         : CELLIST_SORT_BROKEN;
+            after = cellist_sort_is_splitter(lists_view, next[i])
+                        ? next[i] >> CELLIST_SORT_SEGMENT_BITS
+                        : CELLIST_SORT_BROKEN;
         else if (next[i] != CELLIST_NONE)
-            behind = CELLIST_SORT_BROKEN;
-        parts[begin + i] = (uint2)(lengths[i], behind);
+            after = CELLIST_SORT_BROKEN;
+        segments[begin + i] = (uint2)(lengths[i], after);
     }
 }
 
-// Finds the place of each part of a list. Returns the length of the list, or 0 if it is broken.
-static inline uint cellist_sort_chain(const cellist_view view, uint list, global const uint2* parts,
-                                      global uint2* places) {
+// Finds the offset of each segment of a list. Returns the length of the list, or 0 if it is broken.
+static inline uint cellist_sort_chain(const cellist_view view, uint list,
+                                      global const uint2* segments, global uint2* offsets) {
     const uint splitters = cellist_sort_splitters(view);
-    uint part = splitters + list;
+    uint segment = splitters + list;
     uint length = 0;
     for (uint step = 0; step <= splitters; ++step) {
-        const uint2 own = parts[part];
-        places[part] = (uint2)(list, length);
+        const uint2 own = segments[segment];
+        offsets[segment] = (uint2)(list, length);
         length += own.x;
         if (length > view.capacity_nodes || own.y == CELLIST_SORT_BROKEN) return 0;
         if (own.y == CELLIST_NONE) return length;
-        part = own.y;
+        segment = own.y;
     }
     return 0;
 }
@@ -113,50 +115,52 @@ static inline uint cellist_sort_chain(const cellist_view view, uint list, global
 #endif
 
 // Gives each list its chunks, and linked lists their nodes; one work-item a list.
-kernel void cellist_sort_place(CELLIST_LISTS(CELLIST_RECORD, lists), global const uint* longer,
-                               uint count, global cellist_sort_long* longs, global uint* owners,
-                               uint owners_end, volatile global cellist_sort_state* state
+kernel void cellist_sort_assign(CELLIST_LISTS(CELLIST_RECORD, lists), global const uint* longer,
+                                uint count, global cellist_sort_long_list* long_lists,
+                                global uint* chunk_owners, uint chunks_max,
+                                volatile global cellist_sort_state* state
 #if CELLIST_MODES == CELLIST_LINKED
-                               ,
-                               global const uint2* parts, global uint2* places, global uint* heads
+                                ,
+                                global const uint2* segments, global uint2* offsets,
+                                global uint* heads
 #endif
 ) {
     const cellist_view lists_view = cellist_view_of(lists);
     const uint i = get_global_id(0);
     if (i >= count) return;
-    cellist_sort_long list = {0, 0, 0};
+    cellist_sort_long_list list = {0, 0, 0};
     const uint cell = longer[i];
 #if CELLIST_MODES == CELLIST_LINKED
-    list.length = cellist_sort_chain(lists_view, i, parts, places);
+    list.length = cellist_sort_chain(lists_view, i, segments, offsets);
     list.first = atomic_add(&state->nodes, list.length);
 #else
     list.length = cellist_sort_length(lists_heads, lists_view, cell);
     list.first = cellist_begin(lists_heads, lists_view, cell);
     atomic_add(&state->nodes, list.length);
 #endif
-    const uint chunks = (list.length + (CELLIST_SORT_SLOTS - 1)) / CELLIST_SORT_SLOTS;
+    const uint chunks = (list.length + (CELLIST_SORT_CHUNK_SIZE - 1)) / CELLIST_SORT_CHUNK_SIZE;
     list.chunk = atomic_add(&state->chunks, chunks);
     if (list.length == 0 || list.length > lists_view.capacity_nodes ||
-        list.first > lists_view.capacity_nodes - list.length || list.chunk > owners_end - chunks) {
+        list.first > lists_view.capacity_nodes - list.length || list.chunk > chunks_max - chunks) {
         atomic_inc(&state->broken);
         list.length = 0;
     } else {
         atomic_max(&state->longest, list.length);
-        for (uint chunk = 0; chunk < chunks; ++chunk) owners[list.chunk + chunk] = i;
+        for (uint chunk = 0; chunk < chunks; ++chunk) chunk_owners[list.chunk + chunk] = i;
 #if CELLIST_MODES == CELLIST_LINKED
         heads[cell] = list.first;
 #endif
     }
-    longs[i] = list;
+    long_lists[i] = list;
 }
 
 #if CELLIST_MODES == CELLIST_LINKED
 
 // Copies the nodes of the lists; work-items as in cellist_sort_measure.
-kernel void cellist_sort_collect(CELLIST_LISTS(CELLIST_RECORD, lists), global const uint* longer,
-                                 uint count, global const cellist_sort_long* longs,
-                                 global const uint2* parts, global const uint2* places,
-                                 global cellist_sort_node* nodes) {
+kernel void cellist_sort_gather(CELLIST_LISTS(CELLIST_RECORD, lists), global const uint* longer,
+                                uint count, global const cellist_sort_long_list* long_lists,
+                                global const uint2* segments, global const uint2* offsets,
+                                global cellist_sort_node* nodes) {
     const cellist_view lists_view = cellist_view_of(lists);
     const ulong end = (ulong)cellist_sort_splitters(lists_view) + count;
     const ulong begin = (ulong)get_global_id(0) * CELLIST_SORT_LISTS;
@@ -167,18 +171,18 @@ kernel void cellist_sort_collect(CELLIST_LISTS(CELLIST_RECORD, lists), global co
     uint ends[CELLIST_SORT_LISTS];
     uint lasts[CELLIST_SORT_LISTS];
     for (uint i = 0; i < own; ++i) {
-        const uint2 place = places[begin + i];
+        const uint2 offset = offsets[begin + i];
         next[i] = CELLIST_NONE;
-        if (place.x >= count) continue;
-        const cellist_sort_long list = longs[place.x];
-        const uint length = parts[begin + i].x;
-        if (place.y > list.length || length > list.length - place.y) continue;
-        next[i] = cellist_sort_part_begin(CELLIST_PASS(lists), longer, (uint)begin + i);
-        at[i] = list.first + place.y;
+        if (offset.x >= count) continue;
+        const cellist_sort_long_list list = long_lists[offset.x];
+        const uint length = segments[begin + i].x;
+        if (offset.y > list.length || length > list.length - offset.y) continue;
+        next[i] = cellist_sort_segment_begin(CELLIST_PASS(lists), longer, (uint)begin + i);
+        at[i] = list.first + offset.y;
         ends[i] = at[i] + length;
         lasts[i] = list.first + list.length - 1;
     }
-    for (uint step = 0; step < CELLIST_SORT_PART_MAX; ++step) {
+    for (uint step = 0; step < CELLIST_SORT_SEGMENT_MAX; ++step) {
         uint more = 0;
         for (uint i = 0; i < own; ++i) {
             const uint node = next[i];
@@ -194,7 +198,7 @@ kernel void cellist_sort_collect(CELLIST_LISTS(CELLIST_RECORD, lists), global co
 }
 
 // Says that the first `stored` nodes of the pool are allocated, and no others; one work-item a shard, and one
-// a hand.
+// a thread slot.
 kernel void cellist_sort_allocate(CELLIST_LISTS(CELLIST_RECORD, lists), uint stored) {
     const cellist_view lists_view = cellist_view_of(lists);
     const uint i = get_global_id(0);
@@ -202,10 +206,10 @@ kernel void cellist_sort_allocate(CELLIST_LISTS(CELLIST_RECORD, lists), uint sto
     cellist_view view = lists_view;
     view.capacity_nodes = stored;
     if (i < count) lists_shards[i].allocated = cellist_shard_nodes(view, i);
-    if (i < lists_view.hands) {
-        volatile global cellist_hand* hand = &cellist_hands(lists_shards, view)[i];
-        hand->last = hand->node;
-        hand->end = hand->next;
+    if (i < lists_view.thread_slots) {
+        volatile global cellist_thread_block* block = &cellist_thread_blocks(lists_shards, view)[i];
+        block->last = block->node;
+        block->end = block->next;
     }
 }
 
@@ -219,12 +223,12 @@ kernel void cellist_sort_allocate(CELLIST_LISTS(CELLIST_RECORD, lists), uint sto
 #endif
 
 // Sorts each chunk; CELLIST_SORT_ITEMS work-items a chunk.
-CELLIST_SORT_KERNEL cellist_sort_chunks(global const cellist_sort_long* longs,
-                                        global const uint* owners, uint chunks,
+CELLIST_SORT_KERNEL cellist_sort_chunks(global const cellist_sort_long_list* long_lists,
+                                        global const uint* chunk_owners, uint chunks,
                                         global cellist_sort_node* nodes,
                                         global cellist_sort_bits* kept_keys) {
-    CELLIST_SORT_SHARED cellist_sort_bits keys[CELLIST_SORT_SLOTS];
-    CELLIST_SORT_SHARED uchar order[CELLIST_SORT_SLOTS];
+    CELLIST_SORT_SHARED cellist_sort_bits keys[CELLIST_SORT_CHUNK_SIZE];
+    CELLIST_SORT_SHARED uchar order[CELLIST_SORT_CHUNK_SIZE];
     CELLIST_SORT_SHARED uint sum;
     const uint item = cellist_sort_item();
     const uint chunk = (uint)(get_global_id(0) / CELLIST_SORT_ITEMS);
@@ -232,21 +236,21 @@ CELLIST_SORT_KERNEL cellist_sort_chunks(global const cellist_sort_long* longs,
     uint last = 0;
     uint length = 0;
     if (chunk < chunks) {
-        const cellist_sort_long list = longs[owners[chunk]];
-        const uint begin = (chunk - list.chunk) * CELLIST_SORT_SLOTS;
+        const cellist_sort_long_list list = long_lists[chunk_owners[chunk]];
+        const uint begin = (chunk - list.chunk) * CELLIST_SORT_CHUNK_SIZE;
         first = list.first + begin;
         last = list.first + list.length - 1;
-        length = min(list.length - begin, (uint)CELLIST_SORT_SLOTS);
+        length = min(list.length - begin, (uint)CELLIST_SORT_CHUNK_SIZE);
     }
     if (item == 0) sum = 0;
     for (uint i = item; i < length; i += CELLIST_SORT_ITEMS)
         keys[i] = cellist_sort_key(&cellist_sort_record(nodes[first + i]));
     cellist_sort_barrier();
-    uint places[CELLIST_SORT_RUNS * CELLIST_SORT_WIDTH];
-    cellist_sort_add(&sum, cellist_sort_rank(keys, length, item, places));
+    uint ranks[CELLIST_SORT_RUNS * CELLIST_SORT_WIDTH];
+    cellist_sort_add(&sum, cellist_sort_rank(keys, length, item, ranks));
     cellist_sort_barrier();
     if (cellist_sort_unique(sum, length))
-        cellist_sort_order(places, length, item, order);
+        cellist_sort_order(ranks, length, item, order);
     else
         cellist_sort_order_equal(nodes, first, 0, keys, length, item, order);
     cellist_sort_barrier();
@@ -254,13 +258,6 @@ CELLIST_SORT_KERNEL cellist_sort_chunks(global const cellist_sort_long* longs,
     for (uint i = item; i < length; i += CELLIST_SORT_ITEMS) kept_keys[first + i] = keys[order[i]];
 #endif
     cellist_sort_permute(nodes, first, last, length, item, order);
-}
-
-// Whether node a, with key x, comes before node b, with key y.
-static inline uint cellist_sort_before(global const cellist_sort_node* a, cellist_sort_bits x,
-                                       global const cellist_sort_node* b, cellist_sort_bits y) {
-    if (x != y) return x < y;
-    return cellist_record_before(&cellist_sort_record(*a), &cellist_sort_record(*b), 0);
 }
 
 // How many of the first `taken` nodes of two sorted runs together are of the first run (Odeh, Green,
@@ -275,7 +272,8 @@ static inline uint cellist_sort_split(global const cellist_sort_node* nodes,
         const uint probe = least + (most - least) / 2;
         const uint x = first + probe;
         const uint y = middle + (taken - 1 - probe);
-        if (cellist_sort_before(&nodes[y], cellist_sort_key_of(nodes, keys, y), &nodes[x],
+        if (cellist_sort_before(&cellist_sort_record(nodes[y]), cellist_sort_key_of(nodes, keys, y),
+                                &cellist_sort_record(nodes[x]),
                                 cellist_sort_key_of(nodes, keys, x)))
             most = probe;
         else
@@ -284,22 +282,23 @@ static inline uint cellist_sort_split(global const cellist_sort_node* nodes,
     return least;
 }
 
-// Merges pairs of runs of `run` nodes; a work-item writes CELLIST_SORT_SHARE nodes of a list, a power
+// Merges pairs of runs of `run` nodes; a work-item writes CELLIST_SORT_MERGE_ITEMS nodes of a list, a power
 // of two.
-kernel void cellist_sort_merge(global const cellist_sort_long* longs, global const uint* owners,
-                               uint chunks, global const cellist_sort_node* from,
-                               global cellist_sort_node* to, uint run,
-                               global const cellist_sort_bits* keys_from,
-                               global cellist_sort_bits* keys_to) {
-    const uint per_chunk = max(CELLIST_SORT_SLOTS / CELLIST_SORT_SHARE, 1);
+kernel void cellist_sort_merge_runs(global const cellist_sort_long_list* long_lists,
+                                    global const uint* chunk_owners, uint chunks,
+                                    global const cellist_sort_node* from,
+                                    global cellist_sort_node* to, uint run,
+                                    global const cellist_sort_bits* keys_from,
+                                    global cellist_sort_bits* keys_to) {
+    const uint per_chunk = max(CELLIST_SORT_CHUNK_SIZE / CELLIST_SORT_MERGE_ITEMS, 1);
     const ulong item = get_global_id(0);
     if (item >= (ulong)chunks * per_chunk) return;
     const uint chunk = (uint)(item / per_chunk);
-    const cellist_sort_long list = longs[owners[chunk]];
-    const uint begin =
-        (chunk - list.chunk) * CELLIST_SORT_SLOTS + (uint)(item % per_chunk) * CELLIST_SORT_SHARE;
-    if (run >= list.length || begin >= list.length || begin % CELLIST_SORT_SHARE != 0) return;
-    const uint end = min(list.length - begin, (uint)CELLIST_SORT_SHARE) + begin;
+    const cellist_sort_long_list list = long_lists[chunk_owners[chunk]];
+    const uint begin = (chunk - list.chunk) * CELLIST_SORT_CHUNK_SIZE +
+                       (uint)(item % per_chunk) * CELLIST_SORT_MERGE_ITEMS;
+    if (run >= list.length || begin >= list.length || begin % CELLIST_SORT_MERGE_ITEMS != 0) return;
+    const uint end = min(list.length - begin, (uint)CELLIST_SORT_MERGE_ITEMS) + begin;
     from += list.first;
     keys_from += list.first;
     keys_to += list.first;
@@ -319,7 +318,9 @@ kernel void cellist_sort_merge(global const cellist_sort_long* longs, global con
                 const cellist_sort_bits x = cellist_sort_key_of(from, keys_from, a);
                 const cellist_sort_bits y = cellist_sort_key_of(from, keys_from, b);
                 uint b_first = y < x;
-                if (x == y) b_first = cellist_sort_before(&from[b], y, &from[a], x);
+                if (x == y)
+                    b_first = cellist_sort_before(&cellist_sort_record(from[b]), y,
+                                                  &cellist_sort_record(from[a]), x);
                 cellist_sort_store(to, list.first + at, list.first + list.length - 1,
                                    &from[a + ((b - a) & (0 - b_first))]);
 #if CELLIST_SORT_KEEPS_KEYS
@@ -340,16 +341,18 @@ kernel void cellist_sort_merge(global const cellist_sort_long* longs, global con
 }
 
 // Copies the lists whose last pass left them in the other pool; one work-item a node.
-kernel void cellist_sort_return(global const cellist_sort_long* longs, global const uint* owners,
-                                uint chunks, global const cellist_sort_node* from,
+kernel void cellist_sort_return(global const cellist_sort_long_list* long_lists,
+                                global const uint* chunk_owners, uint chunks,
+                                global const cellist_sort_node* from,
                                 global cellist_sort_node* to) {
     const ulong item = get_global_id(0);
-    if (item >= (ulong)chunks * CELLIST_SORT_SLOTS) return;
-    const uint chunk = (uint)(item / CELLIST_SORT_SLOTS);
-    const cellist_sort_long list = longs[owners[chunk]];
-    const uint at = (chunk - list.chunk) * CELLIST_SORT_SLOTS + (uint)(item % CELLIST_SORT_SLOTS);
+    if (item >= (ulong)chunks * CELLIST_SORT_CHUNK_SIZE) return;
+    const uint chunk = (uint)(item / CELLIST_SORT_CHUNK_SIZE);
+    const cellist_sort_long_list list = long_lists[chunk_owners[chunk]];
+    const uint at =
+        (chunk - list.chunk) * CELLIST_SORT_CHUNK_SIZE + (uint)(item % CELLIST_SORT_CHUNK_SIZE);
     if (at >= list.length) return;
     uint odd = 0;
-    for (ulong run = CELLIST_SORT_SLOTS; run < list.length; run *= 2) odd = !odd;
+    for (ulong run = CELLIST_SORT_CHUNK_SIZE; run < list.length; run *= 2) odd = !odd;
     if (odd) to[list.first + at] = from[list.first + at];
 }

@@ -1,62 +1,61 @@
-// Brings the first few records of every list to its front, in order; the others follow in any order. See
-// sort.cl. The whole list is visited.
+// Brings the top k records of every list, those that come first, to its first nodes, in order; the others
+// follow in any order. See sort.cl. The whole list is visited.
 //
-//   count       records of each list that are brought to its front, at most CELLIST_SORT_FRONT
+//   count       records of each list that are brought to its first nodes, at most CELLIST_SORT_TOP_K
 //   length_max  lists of more nodes are left as they are, and counted in state->longer[0]
 //   state       also counts the nodes, and the lists that end outside of the pool
 //
-// Links and offsets stay as they are, records move: those that come first to the first nodes of the list,
-// and those that were there to where these come from. A work-item has CELLIST_SORT_LISTS lists.
+// Links and offsets stay as they are, records move: the top records to the first nodes of the list, and
+// those that were there to where the top records come from. A work-item has CELLIST_SORT_LISTS lists.
 
 // The nodes of a list whose records come first, in order, and its first nodes.
-typedef struct cellist_sort_front {
-    cellist_sort_bits keys[CELLIST_SORT_FRONT];
-    uint nodes[CELLIST_SORT_FRONT];
-    uint numbers[CELLIST_SORT_FRONT];  // in the list, from 0
-    uint places[CELLIST_SORT_FRONT];   // the first nodes
-} cellist_sort_front;
+typedef struct cellist_sort_top {
+    cellist_sort_bits keys[CELLIST_SORT_TOP_K];
+    uint nodes[CELLIST_SORT_TOP_K];
+    uint numbers[CELLIST_SORT_TOP_K];  // in the list, from 0
+    uint targets[CELLIST_SORT_TOP_K];  // the first nodes
+} cellist_sort_top;
 
 // Looks at the next node of a list, the `number`-th.
-static inline void cellist_sort_take(CELLIST_LISTS(CELLIST_RECORD, lists),
-                                     cellist_sort_front* front, uint count, uint number,
-                                     uint node) {
+static inline void cellist_sort_take(CELLIST_LISTS(CELLIST_RECORD, lists), cellist_sort_top* top,
+                                     uint count, uint number, uint node) {
     const cellist_sort_bits key = cellist_sort_key(&cellist_get(lists, node));
-    if (number < count) front->places[number] = node;
+    if (number < count) top->targets[number] = node;
     uint at = min(number, count);
     for (; at > 0; --at) {
-        if (key > front->keys[at - 1]) break;
-        if (key == front->keys[at - 1] &&
+        if (key > top->keys[at - 1]) break;
+        if (key == top->keys[at - 1] &&
             !cellist_record_before(&cellist_get(lists, node),
-                                   &cellist_get(lists, front->nodes[at - 1]), 0))
+                                   &cellist_get(lists, top->nodes[at - 1]), 0))
             break;
         if (at == count) continue;
-        front->keys[at] = front->keys[at - 1];
-        front->nodes[at] = front->nodes[at - 1];
-        front->numbers[at] = front->numbers[at - 1];
+        top->keys[at] = top->keys[at - 1];
+        top->nodes[at] = top->nodes[at - 1];
+        top->numbers[at] = top->numbers[at - 1];
     }
     if (at == count) return;
-    front->keys[at] = key;
-    front->nodes[at] = node;
-    front->numbers[at] = number;
+    top->keys[at] = key;
+    top->nodes[at] = node;
+    top->numbers[at] = number;
 }
 
 // Moves `count` records to the first nodes.
 static inline void cellist_sort_move(CELLIST_LISTS(CELLIST_RECORD, lists),
-                                     const cellist_sort_front* front, uint count) {
-    struct CELLIST_RECORD records[CELLIST_SORT_FRONT];
+                                     const cellist_sort_top* top, uint count) {
+    struct CELLIST_RECORD records[CELLIST_SORT_TOP_K];
     // Bit i: the i-th node of the list keeps one of the first `count` records.
     ulong staying = 0;
     for (uint i = 0; i < count; ++i) {
-        records[i] = cellist_get(lists, front->nodes[i]);
-        if (front->numbers[i] < count) staying |= 1ul << front->numbers[i];
+        records[i] = cellist_get(lists, top->nodes[i]);
+        if (top->numbers[i] < count) staying |= 1ul << top->numbers[i];
     }
     uint leaving = 0;
     for (uint i = 0; i < count; ++i) {
-        if (front->numbers[i] < count) continue;
+        if (top->numbers[i] < count) continue;
         while (staying >> leaving & 1) ++leaving;
-        cellist_get(lists, front->nodes[i]) = cellist_get(lists, front->places[leaving++]);
+        cellist_get(lists, top->nodes[i]) = cellist_get(lists, top->targets[leaving++]);
     }
-    for (uint i = 0; i < count; ++i) cellist_get(lists, front->places[i]) = records[i];
+    for (uint i = 0; i < count; ++i) cellist_get(lists, top->targets[i]) = records[i];
 }
 
 kernel void cellist_sort_partial(CELLIST_LISTS(CELLIST_RECORD, lists), uint count, uint length_max,
@@ -65,7 +64,7 @@ kernel void cellist_sort_partial(CELLIST_LISTS(CELLIST_RECORD, lists), uint coun
     const ulong begin = (ulong)get_global_id(0) * CELLIST_SORT_LISTS;
     if (begin >= cellist_cells(lists)) return;
     const uint own = min(cellist_cells(lists) - (uint)begin, (uint)CELLIST_SORT_LISTS);
-    cellist_sort_front fronts[CELLIST_SORT_LISTS];
+    cellist_sort_top tops[CELLIST_SORT_LISTS];
     uint next[CELLIST_SORT_LISTS];
     uint ends[CELLIST_SORT_LISTS];  // a node that is not of the list
     uint lengths[CELLIST_SORT_LISTS];
@@ -91,7 +90,7 @@ kernel void cellist_sort_partial(CELLIST_LISTS(CELLIST_RECORD, lists), uint coun
 #else
             ++next[i];
 #endif
-            cellist_sort_take(CELLIST_PASS(lists), &fronts[i], count, step, node);
+            cellist_sort_take(CELLIST_PASS(lists), &tops[i], count, step, node);
             lengths[i] = step + 1;
             more = 1;
         }
@@ -104,6 +103,6 @@ kernel void cellist_sort_partial(CELLIST_LISTS(CELLIST_RECORD, lists), uint coun
         if (next[i] != ends[i])
             atomic_inc(next[i] < lists_view.capacity_nodes ? &state->longer[0] : &state->broken);
         else
-            cellist_sort_move(CELLIST_PASS(lists), &fronts[i], min(lengths[i], count));
+            cellist_sort_move(CELLIST_PASS(lists), &tops[i], min(lengths[i], count));
     }
 }

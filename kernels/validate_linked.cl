@@ -5,8 +5,8 @@
 //                                          never allocated, links to nodes reached before, nodes
 //                                          reached
 //
-// One work-item a cell; the range is padded to whole work-groups. A walk ends at the first node that
-// another link reached, so all walks together take at most nodes + cells steps, whatever the links
+// One work-item a cell; the range is padded to whole work-groups. A traversal ends at the first node
+// that another link reached, so all traversals together take at most nodes + cells steps, whatever the links
 // hold, and no address outside of the pool is read.
 #include <cellist/lists.clh>
 

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include <cellist/detail/lists_core.hpp>
+#include "container_storage.hpp"
+#include "device_state.hpp"
 
 namespace cellist::detail {
 
@@ -22,31 +23,6 @@ public:
 
 thread_local Build::Running* Build::Running::innermost = nullptr;
 
-/// Runs a part of the build; whatever goes wrong in it leaves all containers empty.
-template <class Step>
-void Build::guarded(Step step) {
-    try {
-        step();
-    } catch (const OpenClError& error) {
-        // A driver may find out only now that it has no memory for a pool it had granted.
-        fail(out_of_memory(error));
-        throw;
-    } catch (...) {
-        fail(false);
-        throw;
-    }
-}
-
-/// `without_pool` gives the nodes' memory back; the next build grows anew.
-void Build::fail(bool without_pool) noexcept {
-    finished_ = true;
-    error_ = std::current_exception();
-    for (ListsCore* container : containers_) {
-        container->set_pending(nullptr);
-        container->empty_after_failure(without_pool);
-    }
-}
-
 /// Keeps the containers alive until the caller returns: the function that inserts may replace them.
 std::vector<std::shared_ptr<ListsCore>> Build::held() const {
     std::vector<std::shared_ptr<ListsCore>> held;
@@ -54,29 +30,92 @@ std::vector<std::shared_ptr<ListsCore>> Build::held() const {
     return held;
 }
 
-void Build::enqueue() {
-    const auto held = this->held();
-    for (std::size_t i = 0; i < containers_.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j)
-            if (containers_[i] == containers_[j])
-                throw Error("a build names the same container twice");
-    for (ListsCore* container : containers_) {
-        take_counts(*container);
-        container->settle();
+/// Throws Error if the containers cannot be built together, or not now.
+void Build::refuse_if_unfit() const {
+    const ListsCore& first = *containers_.front();
+    for (const ListsCore* container : containers_) {
+        container->refuse_build();
+        if (std::count(containers_.begin(), containers_.end(), container) > 1)
+            throw Error("a build names the same container twice");
+        const bool same_device = container->device()->device() == first.device()->device();
+        if (!same_device || container->device()->context() != first.device()->context())
+            throw Error("one build cannot fill the " + first.description() + " on " +
+                        first.device()->info.name + " and the " + container->description() +
+                        " on " + container->device()->info.name + ": they belong to different " +
+                        (same_device ? "contexts" : "devices") + ", so build each of them alone");
     }
-    reports_.resize(containers_.size());
-    guarded([&] {
-        for (ListsCore* container : containers_) container->start();
-        enqueue_passes();
-    });
-    for (ListsCore* container : containers_) container->set_pending(shared_from_this());
 }
 
+/// The only place where a build and its containers change from phase to phase, but for failures.
+void Build::enter(Phase phase) {
+    phase_ = phase;
+    for (ListsCore* container : containers_)
+        container->enter(
+            {.phase = phase, .build = phase == Phase::pending ? shared_from_this() : nullptr});
+}
+
+/// Ends the build with the exception under way, or the one given before; all containers are empty
+/// then.
+void Build::fail() noexcept {
+    bool without_pool = false;
+    if (!error_) {
+        error_ = std::current_exception();
+        try {
+            throw;
+        } catch (const OpenClError& error) {
+            // A driver may find out only now that it has no memory for a pool it had granted.
+            without_pool = out_of_memory(error);
+        } catch (...) {}
+    }
+    phase_ = Phase::failed;
+    for (ListsCore* container : containers_) container->fail(without_pool);
+}
+
+std::shared_ptr<Build> Build::start(std::vector<ListsCore*> containers,
+                                    std::function<void()> insert) {
+    const std::shared_ptr<Build> build(new Build(std::move(containers), std::move(insert)));
+    build->refuse_if_unfit();
+    const auto held = build->held();
+    for (ListsCore* container : build->containers_) {
+        take_counts(*container);
+        container->make_ready();
+    }
+    build->reports_.resize(build->containers_.size());
+    build->enter(Phase::building);
+    try {
+        for (ListsCore* container : build->containers_) container->storage().start();
+        build->enqueue_passes();
+    } catch (...) {
+        build->fail();
+        throw;
+    }
+    build->enter(Phase::pending);
+    return build;
+}
+
+/// The containers may have queues of their own, of one context.
 cl::Event Build::marker() {
     if (error_) std::rethrow_exception(error_);
-    cl::Event event;
-    guarded([&] { event = ListsCore::marker_of(containers_); });
-    return event;
+    try {
+        const DeviceState& first = *containers_.front()->device();
+        std::vector<cl::Event> others;
+        for (const ListsCore* container : containers_) {
+            const DeviceState& device = *container->device();
+            if (device.queue() == first.queue()) continue;
+            others.push_back(device.marker());
+            opencl([&] { device.queue.flush(); });
+        }
+        if (others.empty()) return first.marker();
+        others.push_back(first.marker());
+        return opencl([&] {
+            cl::Event event;
+            first.queue.enqueueMarkerWithWaitList(&others, &event);
+            return event;
+        });
+    } catch (...) {
+        fail();
+        throw;
+    }
 }
 
 /// Enqueues a pass, and more of them where a container needs no look at the counters in between.
@@ -84,14 +123,14 @@ void Build::enqueue_passes() {
     bool another = true;
     while (another) {
         ++passes_;
-        for (ListsCore* container : containers_) container->storage().begin_pass();
+        for (ListsCore* container : containers_) container->storage().get().begin_pass();
         {
             const Running running(*this);
             insert_();
         }
         another = false;
         for (ListsCore* container : containers_)
-            if (container->storage().end_pass()) another = true;
+            if (container->storage().get().end_pass()) another = true;
     }
     for (const auto& bystander : bystanders_) count_refused(*bystander);
 }
@@ -125,7 +164,8 @@ void Build::take_counts(const ListsCore& lists) {
             if (bystander->lists.lock().get() == &lists) count_refused(*bystander);
 }
 
-/// Enqueues the reading of the number of inserts that the lists have refused, if the lists still exist.
+/// Enqueues the reading of the number of inserts that the lists have refused, if the lists still
+/// exist.
 void Build::count_refused(Bystander& bystander) {
     if (std::exchange(bystander.counted, true)) return;
     if (const auto lists = bystander.lists.lock())
@@ -134,7 +174,8 @@ void Build::count_refused(Bystander& bystander) {
         bystander.lists.reset();
 }
 
-/// Throws Error if lists that are not part of the build have refused inserts of its kernels. Blocks.
+/// Throws Error if lists that are not part of the build have refused inserts of its kernels.
+/// Blocks.
 void Build::check_bystanders() {
     for (const auto& bystander : std::exchange(bystanders_, {})) {
         bystander->fence.wait();
@@ -153,46 +194,47 @@ void Build::check_bystanders() {
     }
 }
 
-void Build::run_to_end() {
-    for (;;) {
-        check_bystanders();
-        bool complete = true;
-        for (std::size_t i = 0; i < containers_.size(); ++i) {
-            reports_[i].passes = passes_;
-            if (!containers_[i]->review(reports_[i])) complete = false;
-        }
-        if (complete) return;
-        enqueue_passes();
+/// Whether all containers are complete; the first blocks.
+bool Build::review() {
+    check_bystanders();
+    bool complete = true;
+    for (std::size_t i = 0; i < containers_.size(); ++i) {
+        reports_[i].passes = passes_;
+        if (!containers_[i]->storage().review(reports_[i])) complete = false;
     }
+    return complete;
 }
 
 const std::vector<BuildReport>& Build::finish() {
-    if (!finished_) {
+    if (phase_ == Phase::building)
+        throw Error("a build is finished by the function that inserts for it");
+    if (phase_ == Phase::pending) {
         const auto self = shared_from_this();
         const auto held = this->held();
-        for (ListsCore* container : containers_) container->set_pending(nullptr);
-        guarded([&] { run_to_end(); });
-        finished_ = true;
+        enter(Phase::building);
+        try {
+            while (!review()) enqueue_passes();
+        } catch (...) {
+            fail();
+            throw;
+        }
+        enter(Phase::ready);
     }
     if (error_) std::rethrow_exception(error_);
     return reports_;
 }
 
 void Build::abandon() noexcept {
-    if (finished_) return;
-    finished_ = true;
+    if (phase_ != Phase::pending) return;
     const auto self = shared_from_this();
     error_ = std::make_exception_ptr(Error("the lists went before their build was finished"));
-    for (ListsCore* container : containers_) {
-        container->set_pending(nullptr);
-        container->empty_after_failure(false);
-    }
+    fail();
 }
 
 bool Build::may_change() const {
-    for (const ListsCore* container : containers_)
-        if (container->review_may_change()) return true;
-    return false;
+    return std::any_of(containers_.begin(), containers_.end(), [](const ListsCore* container) {
+        return container->storage().review_may_change();
+    });
 }
 
 }  // namespace cellist::detail

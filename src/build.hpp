@@ -7,47 +7,42 @@
 #include <string>
 #include <vector>
 
+#include <cellist/detail/lists_core.hpp>
 #include <cellist/detail/readback.hpp>
 #include <cellist/report.hpp>
 
-#include "storage.hpp"
-
 namespace cellist::detail {
 
-class ListsCore;
-
 /// A build of one or more containers: passes over the user's kernels until every container is
-/// complete. Enqueues as many passes as need no look at the counters; finish() does the rest.
+/// complete. start() enqueues the passes that need no look at the counters; finish() does the rest.
 class Build : public std::enable_shared_from_this<Build> {
 public:
-    /// `insert` runs the kernels that fill the containers.
-    Build(std::vector<ListsCore*> containers, std::function<void()> insert)
-        : containers_(std::move(containers)), insert_(std::move(insert)) {}
-
-    /// Enqueues the first passes. Throws what `insert` throws; the containers are empty then. Does not
-    /// block.
-    void enqueue();
-    /// Completes when what was enqueued so far has. The build has failed where this throws.
+    /// Enqueues the first passes: `insert` runs the kernels that fill the containers. Throws what
+    /// `insert` throws; the containers are empty then. Throws Error if the containers cannot be
+    /// built together. Does not block.
+    [[nodiscard]] static std::shared_ptr<Build> start(std::vector<ListsCore*> containers,
+                                                      std::function<void()> insert);
+    /// Completes when everything has that was enqueued so far. The build has failed if this throws.
     [[nodiscard]] cl::Event marker();
-    /// The reports, after all passes. Throws the same every time if the build failed; the containers
-    /// are empty then. Blocks.
+    /// The reports, after all passes. Throws the same every time if the build failed; the
+    /// containers are empty then. Blocks.
     const std::vector<BuildReport>& finish();
-    /// Ends a build whose containers are about to go. Blocks.
+    /// Ends a pending build of containers that are about to go. Blocks.
     void abandon() noexcept;
     /// Whether finish() can change the lists.
     [[nodiscard]] bool may_change() const;
 
-    /// Call this before a kernel that takes closed lists: tells the build whose function this thread runs,
-    /// if any, which lists they are and which parameter takes their nodes.
+    /// Call this before a kernel that takes closed lists: tells the build whose function this
+    /// thread runs, if any, which lists they are and which parameter takes their nodes.
     static void give(const std::weak_ptr<const ListsCore>& lists, const std::string& parameter,
                      const std::string& kernel);
-    /// Tells the builds whose functions this thread runs that the counters of a container are about to be
-    /// cleared.
+    /// Tells the builds whose functions this thread runs that the counters of a container are about
+    /// to be cleared.
     static void take_counts(const ListsCore& lists);
 
 private:
-    /// Lists that kernels of the build take and that are not part of it. Records that they refuse would be
-    /// lost silently.
+    /// Lists that kernels of the build take and that are not part of it. Records that they refuse
+    /// would be lost silently.
     struct Bystander {
         std::weak_ptr<const ListsCore> lists;
         std::string description;
@@ -60,22 +55,25 @@ private:
     };
     class Running;
 
+    Build(std::vector<ListsCore*> containers, std::function<void()> insert)
+        : containers_(std::move(containers)), insert_(std::move(insert)) {}
+
+    void refuse_if_unfit() const;
     [[nodiscard]] std::vector<std::shared_ptr<ListsCore>> held() const;
+    void enter(Phase phase);
+    void fail() noexcept;
     void enqueue_passes();
-    void run_to_end();
+    [[nodiscard]] bool review();
     static void count_refused(Bystander& bystander);
     void check_bystanders();
-    void fail(bool without_pool) noexcept;
-    template <class Step>
-    void guarded(Step step);
 
     std::vector<ListsCore*> containers_;
     std::function<void()> insert_;
     std::vector<BuildReport> reports_;
     std::vector<std::unique_ptr<Bystander>> bystanders_;  ///< of the passes since the last review
     std::uint32_t passes_ = 0;
-    bool finished_ = false;
-    std::exception_ptr error_;
+    Phase phase_ = Phase::ready;
+    std::exception_ptr error_;  ///< that the build failed with
 };
 
 }  // namespace cellist::detail

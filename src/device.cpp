@@ -81,9 +81,10 @@ DeviceInfo describe(const cl::Device& device) {
     info.sub_groups = has("cl_khr_subgroups") || has("cl_intel_subgroups");
     info.fp64 = device.getInfo<CL_DEVICE_DOUBLE_FP_CONFIG>() != 0;
     if (has("cl_nv_device_attribute_query"))
-        info.lanes = device.getInfo<CL_DEVICE_COMPUTE_CAPABILITY_MAJOR_NV>() >= 7;
-    info.threads = knows_threads && info.platform == "Portable Computing Language" &&
-                   info.type == CL_DEVICE_TYPE_CPU && info.int64_atomics;
+        info.warp_aggregation = device.getInfo<CL_DEVICE_COMPUTE_CAPABILITY_MAJOR_NV>() >= 7;
+    info.one_thread_per_work_group = knows_threads &&
+                                     info.platform == "Portable Computing Language" &&
+                                     info.type == CL_DEVICE_TYPE_CPU && info.int64_atomics;
     return info;
 }
 
@@ -243,7 +244,8 @@ cl::Program DeviceState::build_program(const std::string& source,
                                        const std::string& options) const {
     return opencl([&] {
         cl::Program program(context, source);
-        // Not by the bindings, which ask for the log of every build, and where that fails, throw that.
+        // Not by the bindings, which ask for the log of every build, and where that fails, throw
+        // that.
         const cl_int code =
             clBuildProgram(program(), 1, &device(), options.c_str(), nullptr, nullptr);
         if (code != CL_SUCCESS)

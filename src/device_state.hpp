@@ -31,9 +31,9 @@ struct DeviceState {
     /// Completes when all that was enqueued has.
     [[nodiscard]] cl::Event marker() const;
 
-    /// The program with this source and these options. Builds it unless it is among the last ones. Always
-    /// builds it if the source or the options include other files, which may have changed. Throws
-    /// OpenClError with the compiler's log. Any thread may call it.
+    /// The program with this source and these options. Builds it unless it is among the last ones.
+    /// Always builds it if the source or the options include other files, which may have changed.
+    /// Throws OpenClError with the compiler's log. Any thread may call it.
     cl::Program program(const std::string& source, const std::string& options);
 
     /// What `cellist tune` has stored of the device. Read the first time; any thread may call it.
@@ -52,12 +52,6 @@ private:
     Recent<std::string, cl::Program> programs_{programs_max};  ///< by options and source
 };
 
-/// Whether a device had no memory for what was asked of it.
-inline bool out_of_memory(const OpenClError& error) {
-    return error.code() == CL_MEM_OBJECT_ALLOCATION_FAILURE ||
-           error.code() == CL_OUT_OF_RESOURCES || error.code() == CL_OUT_OF_HOST_MEMORY;
-}
-
 /// Throws OpenClError if a call of the C interface has failed.
 inline void check(const char* call, cl_int code) {
     if (code != CL_SUCCESS) throw OpenClError(call, code);
@@ -66,9 +60,9 @@ inline void check(const char* call, cl_int code) {
 /// A count of 64 bits that kernels keep in two words.
 inline std::uint64_t wide(cl_uint low, cl_uint high) { return (std::uint64_t{high} << 32) | low; }
 
-/// Places for the threads of a device that has some (threads.clh): twice as many, so that a table of them is
-/// never crowded; a power of two.
-inline cl_uint hands_of(const DeviceInfo& device) {
+/// Places for the threads of a device that has some (threads.clh): twice as many, so that a table
+/// of them is never crowded; a power of two.
+inline cl_uint thread_slots_of(const DeviceInfo& device) {
     return std::bit_ceil(std::max(2 * device.compute_units, 8U));
 }
 

@@ -15,6 +15,13 @@ std::string message(const std::string& call, cl_int code, const std::string& log
 OpenClError::OpenClError(std::string call, cl_int code, std::string log)
     : Error(message(call, code, log)), call_(std::move(call)), code_(code), log_(std::move(log)) {}
 
+bool out_of_memory(const Error& error) noexcept {
+    if (const auto* failure = dynamic_cast<const OpenClError*>(&error))
+        return failure->code() == CL_MEM_OBJECT_ALLOCATION_FAILURE ||
+               failure->code() == CL_OUT_OF_RESOURCES || failure->code() == CL_OUT_OF_HOST_MEMORY;
+    return dynamic_cast<const MemoryError*>(&error) != nullptr;
+}
+
 const char* error_name(cl_int code) {
 #define CELLIST_CASE(name)                                                                         \
     case name:                                                                                     \

@@ -19,13 +19,14 @@ constexpr std::string_view digits = "0123456789";
 constexpr std::string_view blanks = " \t\r\n";
 constexpr std::string_view operators = "+-*/%&|^~!<>=?:.,";
 
-// Comments; the start of trigraphs, of which ??/ is a backslash; digraphs for braces, # and brackets;
-// member access through pointers; operators that write.
+// Comments; the start of trigraphs, of which ??/ is a backslash; digraphs for braces, # and
+// brackets; member access through pointers; operators that write.
 constexpr std::array refused_operators{"//"sv, "/*"sv, "??"sv, "<%"sv, "%>"sv, "%:"sv,  "<:"sv,
                                        ":>"sv, "->"sv, "++"sv, "--"sv, "+="sv, "-="sv,  "*="sv,
                                        "/="sv, "%="sv, "&="sv, "|="sv, "^="sv, "<<="sv, ">>="sv};
 
-// The function around the expression, calls that all work-items must reach, and calls that write or wait.
+// The function around the expression, calls that all work-items must reach, and calls that write or
+// wait.
 constexpr std::array refused_names{
     "cellist_sort_key"sv, "asm"sv,    "barrier"sv, "fract"sv, "frexp"sv, "lgamma_r"sv, "modf"sv,
     "prefetch"sv,         "printf"sv, "remquo"sv,  "sincos"sv};

@@ -41,7 +41,8 @@ ProgramText whole_source(const Source& source, const detail::Definitions& defini
     detail::Definitions all = definitions;
     if (uses_glm) all.add(detail::glm_source());
     ProgramText whole;
-    // Hides the macros of the build options from the library's text; only the user's source sees them.
+    // Hides the macros of the build options from the library's text; only the user's source sees
+    // them.
     const std::vector<std::string> macros = detail::defined_macros(source.options);
     std::string hide, show;
     for (const std::string& macro : macros) {
@@ -50,12 +51,16 @@ ProgramText whole_source(const Source& source, const detail::Definitions& defini
     }
     whole.add(hide, "options");
     whole.add("#define CELLIST_MODES " + std::to_string(modes) + "u", "modes");
-    add_switch(whole, "LANES", device.lanes);
-    add_switch(whole, "THREADS", device.threads);
+    add_switch(whole, "WARP_AGGREGATION", device.warp_aggregation);
+    add_switch(whole, "ONE_THREAD_PER_WORK_GROUP", device.one_thread_per_work_group);
     whole.add(kernels::view_h, "cellist/view.h");
-    whole.add(kernels::lanes_clh, "cellist/lanes.clh");
+    whole.add(kernels::warp_clh, "cellist/warp.clh");
     whole.add(kernels::threads_clh, "cellist/threads.clh");
     whole.add(kernels::allocation_clh, "cellist/allocation.clh");
+    whole.add(kernels::linked_clh, "cellist/linked.clh");
+    whole.add(kernels::counted_clh, "cellist/counted.clh");
+    whole.add(kernels::fixed_clh, "cellist/fixed.clh");
+    whole.add(kernels::nearest_clh, "cellist/nearest.clh");
     whole.add(kernels::lists_clh, "cellist/lists.clh");
     whole.add(all.source(), structs);
     whole.add(show, "options");
@@ -63,7 +68,8 @@ ProgramText whole_source(const Source& source, const detail::Definitions& defini
     return whole;
 }
 
-/// Says which struct or member the device's compiler does not accept, and why; empty for other errors.
+/// Says which struct or member the device's compiler does not accept, and why; empty for other
+/// errors.
 std::string complaint_about_structs(const ProgramText& whole, const std::string& log,
                                     const DeviceInfo& device) {
     const std::vector<ProgramText::Complaint> errors = whole.errors(log, structs);
@@ -84,7 +90,8 @@ std::string complaint_about_structs(const ProgramText& whole, const std::string&
            ": where its name is a word or a macro of OpenCL C, or of the library, rename it\n";
 }
 
-/// A hint that names the macros of the build options that replace a member, or that the log mentions.
+/// A hint that names the macros of the build options that replace a member, or that the log
+/// mentions.
 std::string macro_hint(const std::string& options, const detail::Definitions& definitions,
                        const std::string& log) {
     const bool in_log = log.find("<command line>") != std::string::npos;
@@ -134,8 +141,8 @@ cl::NDRange nd_range(const std::array<std::size_t, 3>& extents, std::size_t dime
     return {extents[0], extents[1], extents[2]};
 }
 
-/// The work-group of a launch: the range's own, else the one that the kernel requires, else one of up
-/// to 256 items that divides the range; the driver's choice where none of a useful size does.
+/// The work-group of a launch: the range's own, else the one that the kernel requires, else one of
+/// up to 256 items that divides the range; the driver's choice where none of a useful size does.
 cl::NDRange work_group(const Range& range, const std::array<std::size_t, 3>& required,
                        std::size_t limit) {
     const auto end = range.local.begin() + static_cast<std::ptrdiff_t>(range.dimensions);

@@ -11,8 +11,8 @@
 namespace cellist::detail {
 
 void throw_no_host_memory(std::uint64_t count, std::size_t element_bytes) {
-    throw Error("the host has no memory for a result of " + std::to_string(count) +
-                " elements of " + std::to_string(element_bytes) + " bytes");
+    throw MemoryError("the host has no memory for a result of " + std::to_string(count) +
+                      " elements of " + std::to_string(element_bytes) + " bytes");
 }
 
 Memory::Memory(std::shared_ptr<DeviceState> state, std::uint64_t count, std::size_t element_bytes,
@@ -20,11 +20,12 @@ Memory::Memory(std::shared_ptr<DeviceState> state, std::uint64_t count, std::siz
     : state_("a Buffer", std::move(state)) {
     const std::uint64_t limit = state_->info.max_allocation_bytes;
     if (count > limit / element_bytes)
-        throw Error(std::string(what) + " of " + std::to_string(count) + " elements of " +
-                    std::to_string(element_bytes) + " bytes exceeds this device's limit of " +
-                    std::to_string(limit) + " bytes per allocation");
+        throw MemoryError(std::string(what) + " of " + std::to_string(count) + " elements of " +
+                          std::to_string(element_bytes) + " bytes exceeds this device's limit of " +
+                          std::to_string(limit) + " bytes per allocation");
     size_bytes_ = count * element_bytes;
-    // PoCL looks for memory at a buffer's first use, and aborts where there is none, unless it is asked to at once.
+    // PoCL looks for memory at a buffer's first use, and aborts where there is none, unless it is
+    // asked to at once.
     cl_mem_flags flags = CL_MEM_READ_WRITE;
     if ((state_->info.type & CL_DEVICE_TYPE_CPU) != 0) flags |= CL_MEM_ALLOC_HOST_PTR;
     opencl([&] {

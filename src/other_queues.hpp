@@ -17,8 +17,8 @@ public:
     OtherQueues(const DeviceState& user, const Arguments& arguments);
 
     [[nodiscard]] bool empty() const { return owners_.empty(); }
-    /// Enqueues the command after all that was enqueued on these queues, and before all that follows
-    /// there. Takes and returns its event. Does not block.
+    /// Enqueues the command after all that was enqueued on these queues, and before all that
+    /// follows there. Takes and returns its event. Does not block.
     cl::Event run_between(const std::function<cl::Event()>& enqueue) const;
 
 private:

@@ -48,9 +48,9 @@ std::string pointed_to(std::string type) {
     return type.starts_with("struct ") ? type.substr(7) : type;
 }
 
-/// The part of a type in which an argument and a parameter must match: float or integer with the size of
-/// the scalar, or the name of a struct. Vectors count as their scalars, and signs do not count. Empty for
-/// other types, which are not compared.
+/// The part of a type in which an argument and a parameter must match: float or integer with the
+/// size of the scalar, or the name of a struct. Vectors count as their scalars, and signs do not
+/// count. Empty for other types, which are not compared.
 std::string comparable(const std::string& type, const Definitions& definitions) {
     if (type.empty()) return {};
     for (const RecordType& record : definitions.records)
@@ -99,7 +99,8 @@ void describe_image(Parameter& parameter, std::string type) {
         if (type == image.type) parameter.image = image.object;
 }
 
-/// Whether a parameter is an image: by its type, or, for a typedef, by its access and address qualifiers.
+/// Whether a parameter is an image: by its type, or, for a typedef, by its access and address
+/// qualifiers.
 bool is_image(const std::string& type, cl_kernel_arg_address_qualifier address,
               cl_kernel_arg_access_qualifier access) {
     Parameter known;
@@ -183,7 +184,8 @@ T memory_info(cl_mem memory, cl_mem_info what) {
     return value;
 }
 
-/// The object that an argument refers to. Its C++ class does not tell the kind: cl::Memory may be any object.
+/// The object that an argument refers to. Its C++ class does not tell the kind: cl::Memory may be
+/// any object.
 struct Given {
     Kind kind = Kind::value;
     cl_mem memory = nullptr;

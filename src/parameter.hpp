@@ -31,8 +31,9 @@ struct Parameter {
 [[nodiscard]] std::vector<Parameter> parameters_of(const cl::Kernel& kernel,
                                                    const Definitions& definitions);
 
-/// Throws Error if an argument does not fit a parameter of a kernel. Not every driver checks this: PoCL
-/// accepts a value of any size, and a buffer for an image. No driver knows the type of a buffer's elements.
+/// Throws Error if an argument does not fit a parameter of a kernel. Not every driver checks this:
+/// PoCL accepts a value of any size, and a buffer for an image. No driver knows the type of a
+/// buffer's elements.
 class ArgumentCheck {
 public:
     ArgumentCheck(const DeviceState& device, const Definitions& definitions,

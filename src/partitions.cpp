@@ -19,8 +19,8 @@ constexpr std::uint64_t growth_part = 8;
 }  // namespace
 
 std::uint64_t Partitions::Plan::words_to_clear() const {
-    const std::uint64_t cursors = std::uint64_t{hands} * partitions;
-    return (hands * sizeof(cl_ulong) + cursors * sizeof(cellist_cursor)) / sizeof(cl_uint);
+    const std::uint64_t cursors = std::uint64_t{thread_slots} * partitions;
+    return (thread_slots * sizeof(cl_ulong) + cursors * sizeof(cellist_cursor)) / sizeof(cl_uint);
 }
 
 std::uint64_t Partitions::Plan::head_words() const {
@@ -33,7 +33,7 @@ std::uint64_t Partitions::Plan::bytes() const {
 
 std::optional<Partitions::Plan> Partitions::plan(const DeviceInfo& device, std::size_t node_bytes,
                                                  std::uint64_t cells, std::uint64_t records) {
-    if (!device.threads) return {};
+    if (!device.one_thread_per_work_group) return {};
     Plan plan{.records = records + records / growth_part, .node_bytes = node_bytes};
     const std::uint64_t threads = std::max(device.compute_units, 1U);
     const std::uint64_t unfilled = threads * CELLIST_BLOCK_NODES;
@@ -42,7 +42,7 @@ std::optional<Partitions::Plan> Partitions::plan(const DeviceInfo& device, std::
     if (most < std::max<std::uint64_t>(threads / 2, 1) || (cells - 1) >> 31 >= most) return {};
     while ((cells - 1) >> plan.bits >= most) ++plan.bits;
     plan.partitions = static_cast<cl_uint>((cells - 1) >> plan.bits) + 1;
-    plan.hands = hands_of(device);
+    plan.thread_slots = thread_slots_of(device);
     plan.nodes =
         (plan.records / CELLIST_BLOCK_NODES + 1) * CELLIST_BLOCK_NODES + plan.partitions * unfilled;
     if (plan.nodes > CELLIST_CAPACITY_NODES_MAX ||

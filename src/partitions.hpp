@@ -19,8 +19,8 @@ public:
         std::uint64_t records = 0;  ///< that fit from a thread a compute unit
         std::uint64_t nodes = 0;    ///< of whole blocks
         std::size_t node_bytes = 0;
-        cl_uint hands = 0;  ///< of threads
-        cl_uint bits = 0;   ///< 2^bits cells are a partition
+        cl_uint thread_slots = 0;  ///< of threads
+        cl_uint bits = 0;          ///< 2^bits cells are a partition
         cl_uint partitions = 0;
 
         /// Words of the heads that are 0 before a pass.

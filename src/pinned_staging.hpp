@@ -20,8 +20,8 @@ public:
     PinnedStaging& operator=(const PinnedStaging&) = delete;
     ~PinnedStaging();
 
-    /// A block that is nobody else's until the last copy of the pointer has gone, for commands of the
-    /// queue. Any thread may call it. Does not block.
+    /// A block that is nobody else's until the last copy of the pointer has gone, for commands of
+    /// the queue. Any thread may call it. Does not block.
     [[nodiscard]] std::shared_ptr<std::byte> block();
 
 private:

@@ -59,20 +59,6 @@ std::optional<fs::path> absolute_path_in(const char* variable) {
 
 }  // namespace
 
-const char* name_of(Storage storage) {
-    switch (storage) {
-        case Storage::linked:
-            return "linked";
-        case Storage::counted:
-            return "counted";
-        case Storage::fixed:
-            return "fixed";
-        case Storage::automatic:
-            break;
-    }
-    return "automatic";
-}
-
 const char* name_of(Pattern pattern) {
     return pattern == Pattern::coherent ? "coherent" : "random";
 }
@@ -146,8 +132,8 @@ std::optional<Profile> load_profile(const DeviceInfo& device) {
 
 namespace {
 
-/// A new file in the folder of the profile, under another name, so that a reader sees either the old
-/// profile or the new one.
+/// A new file in the folder of the profile, under another name, so that a reader sees either the
+/// old profile or the new one.
 fs::path write_unfinished(const fs::path& path, const std::string& text) {
     fs::path unfinished = path;
     unfinished += "." + std::to_string(std::random_device{}());

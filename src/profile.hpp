@@ -26,7 +26,6 @@ inline constexpr std::array choices{Storage::linked, Storage::counted, Storage::
 enum class Pattern { coherent, random };
 inline constexpr std::array patterns{Pattern::coherent, Pattern::random};
 
-[[nodiscard]] const char* name_of(Storage storage);
 [[nodiscard]] const char* name_of(Pattern pattern);
 
 /// What a device was measured to do: the cost of a record in lists of `records` together.
@@ -52,8 +51,8 @@ private:
 /// The profile in a text. None unless profile_text() could have written it for this device.
 [[nodiscard]] std::optional<Profile> parse_profile(const DeviceInfo& device, std::string_view text);
 
-/// The file of a device and its driver in the user's cache directory: cellist/ in $XDG_CACHE_HOME, or
-/// in $HOME/.cache. Throws Error if neither is set to an absolute path.
+/// The file of a device and its driver in the user's cache directory: cellist/ in $XDG_CACHE_HOME,
+/// or in $HOME/.cache. Throws Error if neither is set to an absolute path.
 [[nodiscard]] std::filesystem::path profile_path(const DeviceInfo& device);
 /// The same. Makes the directory, and throws Error where no file can be written there.
 std::filesystem::path prepare_profile(const DeviceInfo& device);

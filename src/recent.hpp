@@ -7,8 +7,8 @@
 
 namespace cellist::detail {
 
-/// A map of the `most` values that were used last: a new value replaces the least recently used one. The
-/// address of a value stays the same while it is in the map.
+/// A map of the `most` values that were used last: a new value replaces the least recently used
+/// one. The address of a value stays the same while it is in the map.
 template <class Key, class Value>
 class Recent {
 public:

@@ -3,6 +3,7 @@
 
 #include <cellist/detail/record_type.hpp>
 #include <cellist/error.hpp>
+#include <cellist/struct.hpp>
 
 #include "cellist_kernels.hpp"
 
@@ -19,8 +20,8 @@ bool same_layout(const RecordType& a, const RecordType& b) {
                       });
 }
 
-/// The end of a line that only exists because of a struct, or of one of its members: says so where the
-/// compiler complains.
+/// The end of a line that only exists because of a struct, or of one of its members: says so where
+/// the compiler complains.
 std::string because_of(const RecordType& record) { return "  // struct " + record.name + "\n"; }
 std::string because_of(const RecordType& record, const RecordMember& member) {
     return "  // member " + member.name + " of struct " + record.name + "\n";
@@ -54,7 +55,8 @@ std::string layout_checks(const RecordType& record) {
 /// Elements of arrays that are compared one by one: longer arrays take a loop, and compile as fast.
 constexpr std::size_t unrolled_max = 16;
 
-/// The scalars of each element of a member that is an array, after "name[i]"; none of other members.
+/// The scalars of each element of a member that is an array, after "name[i]"; none of other
+/// members.
 std::vector<std::string> element_scalars(const RecordMember& member, std::size_t& elements) {
     elements = member.extents.empty() ? 0 : std::stoul(member.extents.substr(1));
     if (elements <= unrolled_max) return {};
@@ -103,8 +105,9 @@ std::string order_definition(const RecordType& record) {
            define("global const struct " + record.name + "*", "->");
 }
 
-/// The words by which a record is ranked, and their number: those of a member, then those of all.
-std::string rank_definition(const RecordType& record) {
+/// The words of a record's key for nearest.clh, and their number: those of a member, then those of
+/// all.
+std::string words_definition(const RecordType& record) {
     std::string members = "    switch (member) {\n";
     std::string lengths = members;
     const auto word_of = [](const std::string& path) {
@@ -125,7 +128,7 @@ std::string rank_definition(const RecordType& record) {
     members += "    default: break;\n    }\n";
     lengths += "    default: break;\n    }\n";
     for (std::size_t i = 0; i < record.members.size(); ++i) {
-        // The member itself is not ranked again.
+        // The member itself is not compared again.
         const RecordMember& member = record.members[i];
         const std::string other = "    if (member != " + std::to_string(i) + ") {\n";
         if (member.is_scalar) members += other, lengths += other;
@@ -135,9 +138,9 @@ std::string rank_definition(const RecordType& record) {
         }
         if (member.is_scalar) members += "    }\n", lengths += "    }\n";
     }
-    return "static inline uint CELLIST_OVERLOAD cellist_rank_word(struct " + record.name +
+    return "static inline uint CELLIST_OVERLOAD cellist_record_word(struct " + record.name +
            " record, uint member, uint word)\n{\n" + members + "    return 0;\n}\n" +
-           "static inline uint CELLIST_OVERLOAD cellist_rank_length(struct " + record.name +
+           "static inline uint CELLIST_OVERLOAD cellist_record_words(struct " + record.name +
            "* record, uint member)\n{\n    uint words = 0;\n" + lengths + "    return words;\n}\n";
 }
 
@@ -179,8 +182,8 @@ std::string Definitions::source() const {
 
     for (const RecordType& record : records) {
         text += struct_definition(record) + layout_checks(record) + order_definition(record);
-        text += "#if CELLIST_MODES & (CELLIST_RANKING | CELLIST_CHOOSING)\n" +
-                rank_definition(record) + "#endif\n";
+        text += "#if CELLIST_MODES & (CELLIST_THRESHOLD_PASS | CELLIST_SELECTION_PASS)\n" +
+                words_definition(record) + "#endif\n";
         text += "CELLIST_DEFINE_NODE(" + record.name + ", " +
                 std::to_string(node_layout(record).alignment) + ")" + because_of(record);
         text += "CELLIST_DEFINE_RECORD(" + record.name + ")" + because_of(record);
@@ -190,11 +193,8 @@ std::string Definitions::source() const {
 
 NodeLayout node_layout(const RecordType& record) {
     constexpr std::size_t link = sizeof(cl_uint);
-    const auto up = [](std::size_t value, std::size_t multiple) {
-        return (value + multiple - 1) / multiple * multiple;
-    };
     const std::size_t least = std::max(record.alignment, link);
-    const std::size_t size = up(up(record.size, link) + link, least);
+    const std::size_t size = round_up(round_up(record.size, link) + link, least);
     // A node of 8 or 16 bytes, or a multiple, can be moved in one go if it is aligned to that.
     const std::size_t natural = size % 16 == 0 ? 16 : size % 8 == 0 ? 8 : 4;
     return {size, std::max(least, natural)};

@@ -11,13 +11,10 @@ namespace cellist::detail {
 namespace {
 
 /// Nodes of the pool for one splitter of long linked lists; see sort_long.cl.
-constexpr unsigned part_bits = 9;
+constexpr unsigned segment_bits = 9;
 
-/// Keys whose kernels are kept for the next sort.
-constexpr std::size_t keys_max = 8;
-
-/// Longest list whose first nodes are looked for by one work-item.
-constexpr cl_uint front_length_max = 4096;
+/// Longest list in which one work-item looks for the top k.
+constexpr cl_uint top_k_length_max = 4096;
 
 template <class... T>
 Arguments arguments_of(const T&... values) {
@@ -96,55 +93,32 @@ std::string piece_type(std::size_t node_bytes) {
     return {};
 }
 
-std::string source_text(const KernelFile& file, const RecordType& record, bool linked,
-                        const SortKey& key, const SortTuning& tuning) {
+/// What the files of kernels for a sort take from the host; see sort.cl.
+std::string sort_definitions(const RecordType& record, bool linked, const SortKey& key,
+                             const SortTuning& tuning) {
     const std::string piece = piece_type(linked ? node_layout(record).size : record.size);
-    std::string text = "#define CELLIST_RECORD " + record.name + "\n" +
-                       define("KEY_BITS", key.bits) + define("KEEPS_KEYS", is_member(key) ? 0 : 1) +
-                       define("SLOTS", tuning.slots) + define("WIDTH", tuning.width) +
-                       define("ITEMS", tuning.items) + define("TEAM", tuning.team) +
-                       define("LISTS", tuning.lists) + define("SHARE", tuning.share) +
-                       define("FRONT", tuning.front) + define("PART_BITS", part_bits) +
-                       (piece.empty() ? "" : "#define CELLIST_SORT_PIECE " + piece + "\n") +
-                       "#line 1 \"sort.cl\"\n";
-    text += kernels::sort_cl;
-    text += key_function(key) + "#line 1 \"" + file.name + "\"\n";
-    text += file.text;
-    return text;
+    return define("KEY_BITS", key.bits) + define("KEEPS_KEYS", is_member(key) ? 0 : 1) +
+           define("CHUNK_SIZE", tuning.chunk_size) + define("WIDTH", tuning.width) +
+           define("ITEMS", tuning.items) + define("TEAM", tuning.team) +
+           define("LISTS", tuning.lists) + define("MERGE_ITEMS", tuning.merge_items) +
+           define("TOP_K", tuning.top_k) + define("SEGMENT_BITS", segment_bits) +
+           (piece.empty() ? "" : "#define CELLIST_SORT_PIECE " + piece + "\n") + key_function(key);
 }
 
 }  // namespace
 
-ListSorter::ListSorter(MemoryOwner device, Definitions definitions)
+ListSorter::ListSorter(MemoryOwner device, RecordKernels& kernels)
     : device_(std::move(device)),
-      definitions_(std::move(definitions)),
+      kernels_(kernels),
       device_type_(device_->info.type),
       state_(device_, 1, sizeof(cellist_sort_state), "state of a sort"),
       cells_{Memory(device_, 1, sizeof(cl_uint), "cells with long lists"),
              Memory(device_, 1, sizeof(cl_uint), "cells with long lists")} {}
 
-ListSorter::Kernels& ListSorter::kernels_of(const SortKey& key) {
-    const auto known = std::find_if(kernels_.begin(), kernels_.end(),
-                                    [&](const auto& entry) { return entry.first == key; });
-    if (known != kernels_.end()) {
-        kernels_.splice(kernels_.begin(), kernels_, known);
-    } else {
-        kernels_.emplace_front(key, Kernels());
-        if (kernels_.size() > keys_max) kernels_.pop_back();
-    }
-    return kernels_.front().second;
-}
-
 Kernel& ListSorter::kernel(const KernelFile& file, const char* name, const Sort& sort,
                            const SortTuning& tuning) {
-    Kernels& kernels = kernels_of(sort.key);
-    const std::tuple id(std::string(name), sort.storage.mode(), tuning);
-    if (const auto known = kernels.find(id); known != kernels.end()) return known->second;
-    definitions_.modes = sort.storage.mode();
-    const std::string text =
-        source_text(file, definitions_.records.back(), sort.linked, sort.key, tuning);
-    return kernels.emplace(id, Kernel(device_, Source{.text = text}, name, definitions_))
-        .first->second;
+    return kernels_.get({{"sort.cl", kernels::sort_cl}, file}, name, sort.storage.mode(),
+                        sort_definitions(kernels_.record(), sort.linked, sort.key, tuning));
 }
 
 void ListSorter::clear_state() {
@@ -179,16 +153,16 @@ ListSorter::Sort ListSorter::sort_of(ListStorage& storage, const SortKey& key) c
     const bool linked = storage.mode() == CELLIST_LINKED;
     return {.storage = storage,
             .key = key,
-            .plan = SortPlan(device_type_, device_->info, linked, definitions_.records.back().size),
+            .plan = SortPlan(device_type_, device_->info, linked, kernels_.record().size),
             .linked = linked,
             .count = storage.cells()};
 }
 
-cl::Event ListSorter::sort(ListStorage& storage, const SortKey& key, std::uint32_t front) {
-    if (storage.cells() == 0 || front == 0) return device_->marker();
+cl::Event ListSorter::sort(ListStorage& storage, const SortKey& key, std::uint32_t top_k) {
+    if (storage.cells() == 0 || top_k == 0) return device_->marker();
     Sort sort = sort_of(storage, key);
-    if (bring_to_front(sort, front)) return std::move(sort.done);
-    if (sort.linked && storage.spare() == nullptr) return sort_in_place(storage, key);
+    if (select_top_k(sort, top_k)) return std::move(sort.done);
+    if (sort.linked && storage.back_buffer() == nullptr) return sort_in_place(storage, key);
     if (!has_room_for(sort, 2 * most_left(sort) * sizeof(cl_uint)))
         return sort_in_place(storage, key);
     sort_classes(sort);
@@ -219,15 +193,15 @@ void ListSorter::sort_in_place(Sort& sort) {
                  &sort.done);
 }
 
-/// True if every list has its first records at its front then. False if lists are to be sorted: because
-/// that takes less time, or there are long lists, or more records than a work-item keeps.
-bool ListSorter::bring_to_front(Sort& sort, std::uint32_t front) {
-    if (!sort.plan.front_pays(front, sort.storage.stored() / sort.storage.cells())) return false;
-    const SortTuning tuning = sort.plan.of_front(front);
+/// True if the top k records of every list are its first nodes then. False if lists are to be sorted:
+/// because that takes less time, or there are long lists, or k is more than a work-item keeps.
+bool ListSorter::select_top_k(Sort& sort, std::uint32_t top_k) {
+    if (!sort.plan.top_k_pays(top_k, sort.storage.stored() / sort.storage.cells())) return false;
+    const SortTuning tuning = sort.plan.of_top_k(top_k);
     clear_state();
     kernel({"sort_partial.cl", kernels::sort_partial_cl}, "cellist_sort_partial", sort, tuning)
         .enqueue(Range::padded((sort.count + tuning.lists - 1) / tuning.lists, 64),
-                 arguments_of(sort.storage, front, front_length_max, state_.cl()), &sort.done);
+                 arguments_of(sort.storage, top_k, top_k_length_max, state_.cl()), &sort.done);
     read_state(sort);
     if (sort.state.longer[0] > 0) return false;
     check_nodes(sort);
@@ -266,7 +240,7 @@ void ListSorter::sort_classes(Sort& sort) {
 /// The most lists that the first class can leave: in sound lists, only longer ones are left.
 std::uint64_t ListSorter::most_left(const Sort& sort) const {
     const SortTuning tuning = sort.plan.of_class(first_class(sort));
-    return std::min<std::uint64_t>(sort.count, sort.storage.pool_nodes() / (tuning.slots + 1));
+    return std::min<std::uint64_t>(sort.count, sort.storage.pool_nodes() / (tuning.chunk_size + 1));
 }
 
 /// Sorts a class of the lists that are left, and collects the cells of those that are longer.
@@ -274,7 +248,7 @@ void ListSorter::sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage)
     const ListStorage& storage = sort.storage;
     // Sound lists that are longer than the class are no more than this.
     const std::uint64_t most =
-        std::min<std::uint64_t>(sort.count, storage.pool_nodes() / (tuning.slots + 1));
+        std::min<std::uint64_t>(sort.count, storage.pool_nodes() / (tuning.chunk_size + 1));
     Memory& longer = cells_[stage % 2];
     if (longer.size_bytes() < most * sizeof(cl_uint))
         longer = Memory(device_, most, sizeof(cl_uint), "cells with long lists");
@@ -283,9 +257,9 @@ void ListSorter::sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage)
                                        static_cast<cl_uint>(sort.count), longer.cl(),
                                        static_cast<cl_uint>(most), stage, state_.cl());
     if (sort.linked) {
-        const ListStorage::Spare* spare = sort.storage.spare();
-        arguments.add(spare->heads.cl());
-        arguments.add(spare->nodes.cl());
+        const ListStorage::BackBuffer* back_buffer = sort.storage.back_buffer();
+        arguments.add(back_buffer->heads.cl());
+        arguments.add(back_buffer->nodes.cl());
     }
     const std::uint64_t together = (sort.count + tuning.lists - 1) / tuning.lists;
     kernel({"sort_lists.cl", kernels::sort_lists_cl}, "cellist_sort_lists", sort, tuning)
@@ -294,44 +268,45 @@ void ListSorter::sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage)
     sort.cells = &longer;
 }
 
-/// Sorts the lists that are left: puts each in one piece, sorts chunks of them, and merges these.
+/// Sorts the lists that are left: makes each contiguous, sorts chunks of them, and merges these.
 void ListSorter::sort_long(Sort& sort) {
     ListStorage& storage = sort.storage;
-    const ListStorage::Spare* spare = storage.spare();
-    const std::optional<Keys> keys = spare != nullptr ? keys_of(sort) : std::nullopt;
+    const ListStorage::BackBuffer* back_buffer = storage.back_buffer();
+    const std::optional<Keys> keys = back_buffer != nullptr ? keys_of(sort) : std::nullopt;
     if (!keys) return sort_in_place(sort);
     const SortTuning tuning = sort.plan.of_long_lists();
     const auto count = static_cast<cl_uint>(sort.count);
     const cl::Buffer& cells = sort.cells->cl();
-    const Memory longs(device_.state(), count, sizeof(cellist_sort_long), "long lists");
-    const std::uint64_t owners_end = storage.pool_nodes() / tuning.slots + count;
-    const Memory owners(device_.state(), owners_end, sizeof(cl_uint), "owners of chunks");
-    const std::uint64_t part_count = sort.linked ? (storage.pool_nodes() >> part_bits) + count : 0;
-    const Memory parts(device_.state(), part_count, sizeof(cl_uint2), "parts of lists");
-    Memory places(device_.state(), part_count, sizeof(cl_uint2), "places of parts of lists");
-    const Range walks = Range::padded((part_count + tuning.lists - 1) / tuning.lists,
-                                      sort.plan.in_groups() ? 64 : 16);
+    const Memory long_lists(device_.state(), count, sizeof(cellist_sort_long_list), "long lists");
+    const std::uint64_t chunks_max = storage.pool_nodes() / tuning.chunk_size + count;
+    const Memory chunk_owners(device_.state(), chunks_max, sizeof(cl_uint), "owners of chunks");
+    const std::uint64_t segment_count =
+        sort.linked ? (storage.pool_nodes() >> segment_bits) + count : 0;
+    const Memory segments(device_.state(), segment_count, sizeof(cl_uint2), "segments of lists");
+    Memory offsets(device_.state(), segment_count, sizeof(cl_uint2), "offsets of segments");
+    const Range traversals = Range::padded((segment_count + tuning.lists - 1) / tuning.lists,
+                                           sort.plan.in_groups() ? 64 : 16);
 
-    Arguments place = arguments_of(storage, cells, count, longs.cl(), owners.cl(),
-                                   static_cast<cl_uint>(owners_end), state_.cl());
+    Arguments assign = arguments_of(storage, cells, count, long_lists.cl(), chunk_owners.cl(),
+                                    static_cast<cl_uint>(chunks_max), state_.cl());
     if (sort.linked) {
         constexpr cl_uint none = CELLIST_NONE;
-        places.fill(&none, sizeof none, places.size_bytes());
-        run_long(sort, "cellist_sort_measure", walks,
-                 arguments_of(storage, cells, count, parts.cl()));
-        place.add(parts.cl());
-        place.add(places.cl());
-        place.add(spare->heads.cl());
+        offsets.fill(&none, sizeof none, offsets.size_bytes());
+        run_long(sort, "cellist_sort_measure", traversals,
+                 arguments_of(storage, cells, count, segments.cl()));
+        assign.add(segments.cl());
+        assign.add(offsets.cl());
+        assign.add(back_buffer->heads.cl());
     }
-    run_long(sort, "cellist_sort_place", Range::padded(count, 64), place);
+    run_long(sort, "cellist_sort_assign", Range::padded(count, 64), assign);
     if (sort.linked)
-        run_long(sort, "cellist_sort_collect", walks,
-                 arguments_of(storage, cells, count, longs.cl(), parts.cl(), places.cl(),
-                              spare->nodes.cl()));
+        run_long(sort, "cellist_sort_gather", traversals,
+                 arguments_of(storage, cells, count, long_lists.cl(), segments.cl(), offsets.cl(),
+                              back_buffer->nodes.cl()));
     read_state(sort);
     check_nodes(sort);
     if (sort.linked) adopt(sort);
-    merge(sort, longs, owners, *keys);
+    merge(sort, long_lists, chunk_owners, *keys);
 }
 
 /// Buffers for keys; nothing where there is no memory for them.
@@ -348,33 +323,34 @@ std::optional<ListSorter::Keys> ListSorter::keys_of(const Sort& sort) const {
     }
 }
 
-/// Sorts long lists that lie in one piece each.
-void ListSorter::merge(Sort& sort, const Memory& longs, const Memory& owners, const Keys& keys) {
+/// Sorts long lists that are contiguous.
+void ListSorter::merge(Sort& sort, const Memory& long_lists, const Memory& chunk_owners,
+                       const Keys& keys) {
     const SortTuning tuning = sort.plan.of_long_lists();
     const cl_uint chunks = sort.state.chunks;
     const cl::Buffer& nodes = sort.storage.nodes();
-    const cl::Buffer& spare = sort.storage.spare()->nodes.cl();
+    const cl::Buffer& back_buffer = sort.storage.back_buffer()->nodes.cl();
     run_long(
         sort, "cellist_sort_chunks",
         Range::padded(std::uint64_t{chunks} * tuning.items, tuning.items == 1 ? 16 : tuning.items),
-        arguments_of(longs.cl(), owners.cl(), chunks, nodes, keys.of_pool.cl()));
+        arguments_of(long_lists.cl(), chunk_owners.cl(), chunks, nodes, keys.of_pool.cl()));
 
-    const unsigned shares = std::max(tuning.slots / tuning.share, 1u);
+    const unsigned merges_a_chunk = std::max(tuning.chunk_size / tuning.merge_items, 1u);
     const Range merges =
-        Range::padded(std::uint64_t{chunks} * shares, sort.plan.in_groups() ? 128 : 16);
+        Range::padded(std::uint64_t{chunks} * merges_a_chunk, sort.plan.in_groups() ? 128 : 16);
     const cl::Buffer* from = &nodes;
-    const cl::Buffer* to = &spare;
+    const cl::Buffer* to = &back_buffer;
     const cl::Buffer* keys_from = &keys.of_pool.cl();
-    const cl::Buffer* keys_to = &keys.of_spare.cl();
-    for (std::uint64_t run = tuning.slots; run < sort.state.longest; run *= 2) {
-        run_long(sort, "cellist_sort_merge", merges,
-                 arguments_of(longs.cl(), owners.cl(), chunks, *from, *to,
+    const cl::Buffer* keys_to = &keys.of_back_buffer.cl();
+    for (std::uint64_t run = tuning.chunk_size; run < sort.state.longest; run *= 2) {
+        run_long(sort, "cellist_sort_merge_runs", merges,
+                 arguments_of(long_lists.cl(), chunk_owners.cl(), chunks, *from, *to,
                               static_cast<cl_uint>(run), *keys_from, *keys_to));
         std::swap(from, to);
         std::swap(keys_from, keys_to);
     }
-    run_long(sort, "cellist_sort_return", Range::padded(std::uint64_t{chunks} * tuning.slots),
-             arguments_of(longs.cl(), owners.cl(), chunks, spare, nodes));
+    run_long(sort, "cellist_sort_return", Range::padded(std::uint64_t{chunks} * tuning.chunk_size),
+             arguments_of(long_lists.cl(), chunk_owners.cl(), chunks, back_buffer, nodes));
 }
 
 /// Enqueues a kernel of sort_long.cl.
@@ -390,7 +366,7 @@ void ListSorter::adopt(Sort& sort) {
     if (storage.stored() < storage.pool_nodes())
         run_long(sort, "cellist_sort_allocate", Range::padded(storage.counters()),
                  arguments_of(storage, static_cast<cl_uint>(storage.stored())));
-    storage.adopt_spare();
+    storage.swap_back_buffer();
 }
 
 }  // namespace cellist::detail

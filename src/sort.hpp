@@ -2,43 +2,32 @@
 
 #include <array>
 #include <cstdint>
-#include <list>
-#include <map>
 #include <memory>
 #include <optional>
-#include <string>
-#include <string_view>
-#include <tuple>
 
 #include <cellist/detail/lists_core.hpp>
 #include <cellist/detail/memory.hpp>
-#include <cellist/detail/record_type.hpp>
 #include <cellist/kernel.hpp>
 
 #include "device_state.hpp"
+#include "record_kernels.hpp"
 #include "sort_tuning.hpp"
 #include "storage.hpp"
 #include "view.hpp"
 
 namespace cellist::detail {
 
-/// A source of the library.
-struct KernelFile {
-    const char* name;
-    std::string_view text;
-};
-
 /// Sorts the lists of a container in classes by their length: up to some hundred nodes by ranking, each
 /// list on its own; longer ones by all work-items together. Kernels are compiled when a list needs them.
 class ListSorter {
 public:
-    ListSorter(MemoryOwner device, Definitions definitions);
+    ListSorter(MemoryOwner device, RecordKernels& kernels);
 
-    /// Sorts all lists; `front` nodes of each at least, the others may follow in any order. Blocks until
+    /// Sorts all lists, the first `top_k` nodes of each at least: the others may follow in any order. Blocks until
     /// it is known how long the lists are. Throws Error where links or offsets are corrupt. Whatever fails,
     /// sound lists keep their records, in some order.
-    cl::Event sort(ListStorage& storage, const SortKey& key, std::uint32_t front);
-    /// Sorts all lists in their places, one work-item a list. Does not block.
+    cl::Event sort(ListStorage& storage, const SortKey& key, std::uint32_t top_k);
+    /// Sorts all lists in place, one work-item a list. Does not block.
     cl::Event sort_in_place(ListStorage& storage, const SortKey& key);
 
     /// Divides the work from now on as on a device of this type; for tests.
@@ -58,18 +47,18 @@ private:
     };
 
     [[nodiscard]] Sort sort_of(ListStorage& storage, const SortKey& key) const;
-    bool bring_to_front(Sort& sort, std::uint32_t front);
+    bool select_top_k(Sort& sort, std::uint32_t top_k);
     void sort_in_place(Sort& sort);
     void sort_classes(Sort& sort);
     void sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage);
     void sort_long(Sort& sort);
     /// The keys of long lists, where their values must be kept: one buffer goes with the pool, the other
-    /// with the spare one.
+    /// with its back buffer.
     struct Keys {
         Memory of_pool;
-        Memory of_spare;
+        Memory of_back_buffer;
     };
-    void merge(Sort& sort, const Memory& longs, const Memory& owners, const Keys& keys);
+    void merge(Sort& sort, const Memory& long_lists, const Memory& chunk_owners, const Keys& keys);
     [[nodiscard]] std::optional<Keys> keys_of(const Sort& sort) const;
     [[nodiscard]] bool has_room_for(const Sort& sort, std::uint64_t more_bytes) const;
     void run_long(Sort& sort, const char* name, const Range& range, const Arguments& arguments);
@@ -80,17 +69,14 @@ private:
     void clear_state();
     void read_state(Sort& sort) const;
     void check_nodes(const Sort& sort) const;
-    using Kernels = std::map<std::tuple<std::string, cl_uint, SortTuning>, Kernel>;
-    [[nodiscard]] Kernels& kernels_of(const SortKey& key);
     Kernel& kernel(const KernelFile& file, const char* name, const Sort& sort,
                    const SortTuning& tuning);
 
     MemoryOwner device_;
-    Definitions definitions_;
+    RecordKernels& kernels_;
     cl_device_type device_type_;
     Memory state_;
-    std::array<Memory, 2> cells_;                     ///< whose lists each class leaves, by turns
-    std::list<std::pair<SortKey, Kernels>> kernels_;  ///< of the last keys, the latest first
+    std::array<Memory, 2> cells_;  ///< whose lists each class leaves, by turns
     std::array<cl_uint, CELLIST_SORT_CLASSES> in_class_{};  ///< lists of the last sort
 };
 

@@ -9,9 +9,9 @@ namespace cellist::detail {
 
 namespace {
 
-/// Private memory for records that are brought to the front of a list.
-constexpr std::size_t front_bytes_max = 4096;
-constexpr std::uint32_t front_max = 64;
+/// Private memory for records that are the top k of a list.
+constexpr std::size_t top_k_bytes_max = 4096;
+constexpr std::uint32_t top_k_max = 64;
 
 /// Work-items that sort together, and the local memory that they take at most.
 constexpr std::size_t items_max = 128;
@@ -33,42 +33,47 @@ std::size_t SortPlan::classes() const { return in_groups_ ? CELLIST_SORT_CLASSES
 
 SortTuning SortPlan::of_class(std::size_t index) const {
     if (!in_groups_) {
-        if (linked_) return {.slots = 256, .width = 8, .items = 1, .team = 1, .lists = 32};
-        return {.slots = 256, .width = 8, .items = 1, .team = 1, .lists = 8};
+        if (linked_) return {.chunk_size = 256, .width = 8, .items = 1, .team = 1, .lists = 32};
+        return {.chunk_size = 256, .width = 8, .items = 1, .team = 1, .lists = 8};
     }
-    const unsigned slots = CELLIST_SORT_CLASS_MIN << index;
-    const unsigned width = slots > 32 || (linked_ && index == 0) ? 8 : 4;
-    const unsigned team = slots / width;
-    return {.slots = slots, .width = width, .items = items_, .team = team, .lists = items_ / team};
+    const unsigned chunk_size = CELLIST_SORT_CLASS_MIN << index;
+    const unsigned width = chunk_size > 32 || (linked_ && index == 0) ? 8 : 4;
+    const unsigned team = chunk_size / width;
+    return {.chunk_size = chunk_size,
+            .width = width,
+            .items = items_,
+            .team = team,
+            .lists = items_ / team};
 }
 
 std::size_t SortPlan::class_for(std::uint64_t length) const {
     std::size_t index = 0;
-    while (index + 1 < classes() && of_class(index).slots < length) ++index;
+    while (index + 1 < classes() && of_class(index).chunk_size < length) ++index;
     return index;
 }
 
 SortTuning SortPlan::of_long_lists() const {
     if (in_groups_)
-        return {.slots = 256, .width = 4, .items = 64, .team = 64, .lists = 1, .share = 2};
-    return {.slots = 128, .width = 8, .items = 1, .team = 1, .lists = 32, .share = 1024};
+        return {
+            .chunk_size = 256, .width = 4, .items = 64, .team = 64, .lists = 1, .merge_items = 2};
+    return {.chunk_size = 128, .width = 8, .items = 1, .team = 1, .lists = 32, .merge_items = 1024};
 }
 
 // On an EPYC under PoCL, the first 8 of 64 nodes are found in 0.8 times as long as the lists are sorted,
 // 8 of 256 in a third, 8 of 4,096 in a sixth. On an H200, where short lists are sorted in local memory,
 // it takes 0.8 to 5 times as long for lists of 64, and half as long for 16 of 1,024.
-bool SortPlan::front_pays(std::uint32_t front, std::uint64_t mean) const {
-    if (front > front_max || of_front(front).front * record_bytes_ > front_bytes_max) return false;
-    return mean >= (in_groups_ ? 512 : 8 * std::uint64_t{front});
+bool SortPlan::top_k_pays(std::uint32_t top_k, std::uint64_t mean) const {
+    if (top_k > top_k_max || of_top_k(top_k).top_k * record_bytes_ > top_k_bytes_max) return false;
+    return mean >= (in_groups_ ? 512 : 8 * std::uint64_t{top_k});
 }
 
-SortTuning SortPlan::of_front(std::uint32_t front) const {
-    return {.slots = 8,
+SortTuning SortPlan::of_top_k(std::uint32_t top_k) const {
+    return {.chunk_size = 8,
             .width = 8,
             .items = 1,
             .team = 1,
             .lists = !in_groups_ && linked_ ? 16u : 1u,
-            .front = std::max(8u, std::bit_ceil(front))};
+            .top_k = std::max(8u, std::bit_ceil(top_k))};
 }
 
 }  // namespace cellist::detail

@@ -10,13 +10,13 @@ namespace cellist::detail {
 
 /// How the work of a sort is divided among work-items; see kernels/sort.cl.
 struct SortTuning {
-    unsigned slots;      ///< records that are ranked together
-    unsigned width;      ///< records that a work-item ranks at once
-    unsigned items;      ///< work-items that sort together
-    unsigned team;       ///< work-items that sort a list
-    unsigned lists;      ///< lists that `items` sort, or parts of lists that a work-item walks
-    unsigned share = 1;  ///< nodes that a work-item merges
-    unsigned front = 1;  ///< most records that a work-item brings to the front
+    unsigned chunk_size;  ///< records that are ranked together
+    unsigned width;       ///< records that a work-item ranks at once
+    unsigned items;       ///< work-items that sort together
+    unsigned team;        ///< work-items that sort a list
+    unsigned lists;  ///< lists that `items` sort, or segments of lists that a work-item traverses
+    unsigned merge_items = 1;  ///< nodes that a work-item merges
+    unsigned top_k = 1;        ///< most first records that a work-item finds
 
     friend auto operator<=>(const SortTuning&, const SortTuning&) = default;
 };
@@ -37,10 +37,9 @@ public:
     [[nodiscard]] std::size_t class_for(std::uint64_t length) const;
     [[nodiscard]] SortTuning of_long_lists() const;
 
-    /// Whether bringing `front` records to the front of lists of `mean` nodes takes less time than
-    /// sorting the lists.
-    [[nodiscard]] bool front_pays(std::uint32_t front, std::uint64_t mean) const;
-    [[nodiscard]] SortTuning of_front(std::uint32_t front) const;
+    /// Whether finding the top k of lists of `mean` nodes takes less time than sorting the lists.
+    [[nodiscard]] bool top_k_pays(std::uint32_t top_k, std::uint64_t mean) const;
+    [[nodiscard]] SortTuning of_top_k(std::uint32_t top_k) const;
 
 private:
     unsigned items_;  ///< of a work-group

@@ -11,14 +11,13 @@ namespace cellist::detail {
 
 static_assert(Shape::extent_max == CELLIST_EXTENT_MAX);
 static_assert(Shape::cells_max < CELLIST_NONE);
-static_assert(sizeof(cellist_hand) == sizeof(cellist_shard));
+static_assert(sizeof(cellist_thread_block) == sizeof(cellist_shard));
 
 namespace {
 
 /// Four blocks a shard at least: more shards in a small pool only make the search for the last free
 /// nodes longer.
-cl_uint shard_bits_for(std::uint64_t capacity_nodes, Allocation allocation) {
-    if (allocation == Allocation::global) return 0;
+cl_uint shard_bits_for(std::uint64_t capacity_nodes) {
     cl_uint bits = 0;
     while (bits < CELLIST_SHARD_BITS_MAX &&
            (std::uint64_t{4} * CELLIST_BLOCK_NODES << (bits + 1)) <= capacity_nodes)
@@ -26,9 +25,9 @@ cl_uint shard_bits_for(std::uint64_t capacity_nodes, Allocation allocation) {
     return bits;
 }
 
-/// Elements of the counters that the owners of hands take.
-std::size_t elements_of_owners(cl_uint hands) {
-    return hands * sizeof(cl_ulong) / sizeof(cellist_shard);
+/// Elements of the counters that the owners of thread_slots take.
+std::size_t elements_of_threads(cl_uint thread_slots) {
+    return thread_slots * sizeof(cl_ulong) / sizeof(cellist_shard);
 }
 
 /// Builds that grow as often as this end with an error.
@@ -40,12 +39,11 @@ std::string mebibytes(std::uint64_t bytes) {
 
 }  // namespace
 
-ListStorage::ListStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
-                         const Shape& shape, const ListsOptions& options, cl_uint mode,
-                         std::size_t node_bytes, std::uint64_t head_words_a_cell,
+ListStorage::ListStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options,
+                         cl_uint mode, std::size_t node_bytes, std::uint64_t head_words_a_cell,
                          std::uint64_t more_head_words)
-    : device_(std::move(device)),
-      definitions_(definitions),
+    : device_(kernels.device()),
+      kernels_(kernels),
       shape_(shape),
       options_(options),
       mode_(mode),
@@ -55,26 +53,27 @@ ListStorage::ListStorage(std::shared_ptr<DeviceState> device, const Definitions&
     const std::uint64_t cell_bytes = head_words_a_cell * sizeof(cl_uint);
     const std::uint64_t more_bytes = more_head_words * sizeof(cl_uint);
     if (cell_bytes > allocation)
-        throw Error(std::to_string(cell_bytes) +
-                    " bytes of heads for each cell exceed this device's "
-                    "limit of " +
-                    mebibytes(allocation) + " per allocation: lower slots");
+        throw MemoryError(std::to_string(cell_bytes) +
+                          " bytes of heads for each cell exceed this device's "
+                          "limit of " +
+                          mebibytes(allocation) + " per allocation: lower slots");
     const std::uint64_t most_cells =
         more_bytes > allocation ? 0 : (allocation - more_bytes) / cell_bytes;
     if (shape.cells() > most_cells)
-        throw Error("a shape of " + shape.to_string() + " cells exceeds this device's limit of " +
-                    std::to_string(most_cells) + " cells (" + mebibytes(allocation) +
-                    " per allocation, " + std::to_string(cell_bytes) + " bytes a cell)");
+        throw MemoryError("a shape of " + shape.to_string() +
+                          " cells exceeds this device's limit of " + std::to_string(most_cells) +
+                          " cells (" + mebibytes(allocation) + " per allocation, " +
+                          std::to_string(cell_bytes) + " bytes a cell)");
     const std::uint64_t head_words = head_words_a_cell * shape.cells() + more_head_words;
     const std::uint64_t head_bytes = head_words * sizeof(cl_uint);
     if (head_bytes > options.budget_bytes)
-        throw Error("the heads of a shape of " + shape.to_string() + " cells take " +
-                    mebibytes(head_bytes) + ", over the budget of " +
-                    mebibytes(options.budget_bytes) + ": raise budget_bytes");
+        throw MemoryError("the heads of a shape of " + shape.to_string() + " cells take " +
+                          mebibytes(head_bytes) + ", over the budget of " +
+                          mebibytes(options.budget_bytes) + ": raise budget_bytes");
     heads_ = Memory(device_, head_words, sizeof(cl_uint), "head buffer");
 }
 
-cellist_view ListStorage::view() const {
+cellist_view ListStorage::view(Inserts inserts) const {
     return {{static_cast<cl_uint>(shape_.extent(0)), static_cast<cl_uint>(shape_.extent(1)),
              static_cast<cl_uint>(shape_.extent(2)), static_cast<cl_uint>(shape_.extent(3))},
             static_cast<cl_uint>(shape_.cells()),
@@ -83,15 +82,16 @@ cellist_view ListStorage::view() const {
             mode_,
             slots_,
             static_cast<cl_uint>(slice_.first_cell),
-            open_ ? static_cast<cl_uint>(slice_.cells) : 0,
-            open_ && reserves_ ? 1u : 0u,
-            rank_member_,
-            rank_words_,
-            hands_with(capacity_nodes_),
+            inserts == Inserts::accepted ? static_cast<cl_uint>(slice_.cells) : 0,
+            key_member_,
+            threshold_words_,
+            thread_slots_with(capacity_nodes_),
             0};
 }
 
-void ListStorage::add_to(Arguments& arguments) const { add_to(arguments, nodes_, heads_, view()); }
+void ListStorage::add_to(Arguments& arguments, Inserts inserts) const {
+    add_to(arguments, nodes_, heads_, view(inserts));
+}
 
 void ListStorage::add_to(Arguments& arguments, const Memory& nodes, const Memory& heads,
                          const cellist_view& view) const {
@@ -103,13 +103,13 @@ void ListStorage::add_to(Arguments& arguments, const Memory& nodes, const Memory
 }
 
 std::uint64_t ListStorage::pool_nodes_with(std::uint64_t capacity_nodes) const {
-    return capacity_nodes + std::uint64_t{hands_with(capacity_nodes)} * CELLIST_BLOCK_NODES;
+    return capacity_nodes + std::uint64_t{thread_slots_with(capacity_nodes)} * CELLIST_BLOCK_NODES;
 }
 
 std::uint64_t ListStorage::counters_with(std::uint64_t capacity_nodes) const {
-    const cl_uint hands = hands_with(capacity_nodes);
-    return (std::uint64_t{1} << shard_bits_for(capacity_nodes, options_.allocation)) + 1 + hands +
-           elements_of_owners(hands);
+    const cl_uint thread_slots = thread_slots_with(capacity_nodes);
+    return (std::uint64_t{1} << shard_bits_for(capacity_nodes)) + 1 + thread_slots +
+           elements_of_threads(thread_slots);
 }
 
 std::uint64_t ListStorage::bytes_with(std::uint64_t capacity_nodes) const {
@@ -119,31 +119,31 @@ std::uint64_t ListStorage::bytes_with(std::uint64_t capacity_nodes) const {
 
 std::uint64_t ListStorage::replaceable_bytes() const {
     return nodes_.size_bytes() + shards_.size_bytes() +
-           (spare_ ? spare_->nodes.size_bytes() + spare_->heads.size_bytes() : 0);
+           (back_buffer_ ? back_buffer_->nodes.size_bytes() + back_buffer_->heads.size_bytes() : 0);
 }
 
-const ListStorage::Spare* ListStorage::spare() {
-    if (spare_) return &*spare_;
+const ListStorage::BackBuffer* ListStorage::back_buffer() {
+    if (back_buffer_) return &*back_buffer_;
     const std::uint64_t heads = mode_ == CELLIST_LINKED ? shape_.cells() : 0;
     if (!has_room_for(bytes() + nodes_.size_bytes() + heads * sizeof(cl_uint))) return nullptr;
     try {
-        Spare made{Memory(device_, pool_nodes(), node_bytes_, "second pool"),
-                   Memory(device_, heads, sizeof(cl_uint), "second head buffer")};
+        BackBuffer made{Memory(device_, pool_nodes(), node_bytes_, "second pool"),
+                        Memory(device_, heads, sizeof(cl_uint), "second head buffer")};
         // Some drivers find out only at the first use whether they have the memory.
         constexpr cl_uchar zero = 0;
         for (Memory* memory : {&made.nodes, &made.heads})
             memory->fill(&zero, sizeof zero, std::min<std::uint64_t>(memory->size_bytes(), 1));
-        spare_ = std::move(made);
+        back_buffer_ = std::move(made);
     } catch (const OpenClError& error) {
         if (!out_of_memory(error)) throw;
         return nullptr;
     }
-    return &*spare_;
+    return &*back_buffer_;
 }
 
-void ListStorage::adopt_spare() noexcept {
-    std::swap(nodes_, spare_->nodes);
-    std::swap(heads_, spare_->heads);
+void ListStorage::swap_back_buffer() noexcept {
+    std::swap(nodes_, back_buffer_->nodes);
+    std::swap(heads_, back_buffer_->heads);
 }
 
 std::optional<std::string> ListStorage::refusal(std::uint64_t capacity_nodes) const {
@@ -187,8 +187,8 @@ void ListStorage::allocate_pool(std::uint64_t capacity_nodes) {
     // The old nodes go first, so that the device never holds both pools.
     capacity_nodes_ = 0;
     nodes_ = Memory();
-    spare_.reset();
-    const cl_uint bits = shard_bits_for(capacity_nodes, options_.allocation);
+    back_buffer_.reset();
+    const cl_uint bits = shard_bits_for(capacity_nodes);
     shards_ = Memory(device_, counters_with(capacity_nodes), sizeof(cellist_shard), "counters");
     shard_bits_ = bits;
     nodes_ = Memory(device_, pool_nodes_with(capacity_nodes), node_bytes_, "pool");
@@ -208,19 +208,17 @@ PendingRead ListStorage::read_late(std::array<cl_uint, 2>& words) const {
     return shards_.read_later(words.data(), sizeof words, from + offsetof(cellist_shard, late_low));
 }
 
-ListStorage::Counters ListStorage::sum(const Shards& shards, cl_uint hands) {
+ListStorage::Counters ListStorage::sum(const Shards& shards, cl_uint thread_slots) {
     Counters sum;
-    const std::size_t count = shards.size() - hands - elements_of_owners(hands);
+    const std::size_t count = shards.size() - thread_slots - elements_of_threads(thread_slots);
     for (const cellist_shard& shard : std::span(shards).first(count)) {
         sum.allocated += shard.allocated;
         sum.dropped += wide(shard.dropped_low, shard.dropped_high);
         sum.rejected += wide(shard.rejected_low, shard.rejected_high);
         sum.late += wide(shard.late_low, shard.late_high);
-        sum.open_reservations += shard.open_reservations;
-        sum.missing += wide(shard.missing_low, shard.missing_high);
     }
-    for (const cellist_shard& element : std::span(shards).subspan(count, hands)) {
-        const auto hand = std::bit_cast<cellist_hand>(element);
+    for (const cellist_shard& element : std::span(shards).subspan(count, thread_slots)) {
+        const auto hand = std::bit_cast<cellist_thread_block>(element);
         sum.allocated -= (hand.last - hand.node) + (hand.end - hand.next);
     }
     return sum;
@@ -289,22 +287,6 @@ PendingRead ListStorage::find(Findings& findings, Kernel& kernel,
 void ListStorage::start() {
     growths_ = 0;
     expect_nothing();
-    start_anew();
-}
-
-void ListStorage::begin_pass() {
-    prepare_pass();
-    open_ = true;
-}
-
-bool ListStorage::end_pass() {
-    open_ = false;
-    return finish_pass();
-}
-
-bool ListStorage::review(BuildReport& report) {
-    reading_.wait();
-    return review_pass(report);
 }
 
 void ListStorage::release_pool() noexcept {
@@ -312,53 +294,37 @@ void ListStorage::release_pool() noexcept {
     if (!released_nodes_) released_nodes_ = capacity_nodes_;
     capacity_nodes_ = 0;
     nodes_ = Memory();
-    spare_.reset();
+    back_buffer_.reset();
 }
 
 void ListStorage::recover(bool without_pool) {
     settle();
-    open_ = false;
     if (released_nodes_ && options_.overflow != Overflow::grow) allocate_pool(*released_nodes_);
     released_nodes_.reset();
     make_whole(without_pool);
     clear();
 }
 
-std::unique_ptr<ListStorage> make_storage(std::shared_ptr<DeviceState> device,
-                                          const Definitions& definitions, const Shape& shape,
+std::unique_ptr<ListStorage> make_storage(RecordKernels& kernels, const Shape& shape,
                                           const ListsOptions& options) {
+    if (options.storage.nearest_key())
+        return std::make_unique<NearestStorage>(kernels, shape, options);
     const bool fixed = options.storage == Storage::fixed;
-    if (options.overflow == Overflow::keep_nearest && !fixed)
-        throw Error("Overflow::keep_nearest needs Storage::fixed");
-    if (options.overflow != Overflow::keep_nearest && !options.nearest_by.empty())
-        throw Error("nearest_by needs Overflow::keep_nearest");
     if (options.overflow != Overflow::grow &&
         !(fixed ? options.slots.has_value() : options.capacity_nodes.has_value()))
         throw Error(std::string("an Overflow other than grow needs ") +
                     (fixed ? "slots in Storage::fixed" : "capacity_nodes"));
     switch (options.storage) {
         case Storage::linked:
-            return std::make_unique<LinkedStorage>(std::move(device), definitions, shape, options);
+            return std::make_unique<LinkedStorage>(kernels, shape, options);
         case Storage::counted:
-            return std::make_unique<CountedStorage>(std::move(device), definitions, shape, options);
+            return std::make_unique<CountedStorage>(kernels, shape, options);
         case Storage::fixed:
-            if (options.overflow == Overflow::keep_nearest)
-                return std::make_unique<NearestStorage>(std::move(device), definitions, shape,
-                                                        options);
-            return std::make_unique<FixedStorage>(std::move(device), definitions, shape, options);
+            return std::make_unique<FixedStorage>(kernels, shape, options);
         case Storage::automatic:
             break;
     }
     throw Error("unknown storage");
-}
-
-Kernel ListStorage::kernel(const std::string& name, std::string_view source, cl_uint mode) const {
-    Definitions definitions = definitions_;
-    definitions.modes = mode;
-    return {device_,
-            Source{.text = "#define CELLIST_RECORD " + record().name + "\n#line 1 \"" + name +
-                           ".cl\"\n" + std::string(source)},
-            name, definitions};
 }
 
 }  // namespace cellist::detail

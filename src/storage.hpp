@@ -17,6 +17,7 @@
 #include <cellist/shape.hpp>
 
 #include "device_state.hpp"
+#include "record_kernels.hpp"
 #include "view.hpp"
 
 namespace cellist::detail {
@@ -26,6 +27,9 @@ class UnrepeatableError : public Error {
 public:
     using Error::Error;
 };
+
+/// Whether a kernel may insert into a container.
+enum class Inserts { refused, accepted };
 
 /// How a container keeps its nodes: the buffers, and the passes of a build. One class a storage; the
 /// device's side of all of them is kernels/cellist/lists.clh.
@@ -40,18 +44,15 @@ public:
 
     /// A build is start(), then passes until review() says that the lists are complete; see build.cpp.
     /// More passes may follow, where another container needs them: they fill the lists anew.
-    void start();
-    /// Enqueues what the next run of the kernels needs; from now on kernels may insert. Does not
-    /// block.
-    void begin_pass();
+    virtual void start();
+    /// Enqueues what the next run of the kernels needs. Does not block.
+    virtual void begin_pass() { clear(); }
     /// Enqueues what follows a run of the kernels, the reading of its counters above all. True if
     /// another pass must follow that needs no review of this one. Does not block.
-    bool end_pass();
+    virtual bool end_pass() = 0;
     /// Takes the counters of the last pass into the report, and grows, stops or drops by the options.
     /// True if the lists are complete. Throws OverflowError; the caller empties the lists then. Blocks.
-    bool review(BuildReport& report);
-    /// Whether kernels may insert now: in the midst of a pass.
-    [[nodiscard]] bool is_open() const { return open_; }
+    virtual bool review(BuildReport& report) = 0;
     /// Whether a review can change the lists.
     [[nodiscard]] bool may_grow() const { return options_.overflow != Overflow::drop; }
 
@@ -83,13 +84,13 @@ public:
     [[nodiscard]] PendingRead read_late(std::array<cl_uint, 2>& words) const;
 
     /// Adds what CELLIST_LISTS declares.
-    virtual void add_to(Arguments& arguments) const;
+    virtual void add_to(Arguments& arguments, Inserts inserts = Inserts::refused) const;
 
     /// Records that surely fit.
     [[nodiscard]] std::uint64_t capacity_nodes() const { return capacity_nodes_; }
-    /// Nodes there are; more than that where threads have some in their hands.
+    /// Nodes there are; more than that where threads have some in their thread_slots.
     [[nodiscard]] std::uint64_t pool_nodes() const { return pool_nodes_with(capacity_nodes_); }
-    /// Elements of the counters, hands of threads included.
+    /// Elements of the counters, thread_slots of threads included.
     [[nodiscard]] std::uint64_t counters() const { return counters_with(capacity_nodes_); }
     /// Device memory of all buffers that the storage keeps.
     [[nodiscard]] std::uint64_t bytes() const { return device_.bytes(); }
@@ -98,19 +99,20 @@ public:
         return all_bytes <= std::min(options_.budget_bytes, device_->info.global_memory_bytes);
     }
     [[nodiscard]] std::uint64_t cells() const { return shape_.cells(); }
+    [[nodiscard]] Storage kind() const { return options_.storage; }
     [[nodiscard]] const cl::Buffer& nodes() const { return nodes_.cl(); }
 
     /// Memory for as many nodes as the pool has, and for their heads where lists are linked.
-    struct Spare {
+    struct BackBuffer {
         Memory nodes;
         Memory heads;
     };
     /// Makes it the first time, and keeps it as long as the pool. Null where the budget or the device
     /// has no room for it.
-    [[nodiscard]] const Spare* spare();
-    /// The spare nodes and heads take the place of the pool's, and these become spare: linked lists have
+    [[nodiscard]] const BackBuffer* back_buffer();
+    /// The back_buffer nodes and heads take the place of the pool's, and these become back_buffer: linked lists have
     /// moved, and nothing else is in the pool.
-    void adopt_spare() noexcept;
+    void swap_back_buffer() noexcept;
     /// The mode in which the lists are read.
     [[nodiscard]] cl_uint mode() const { return mode_; }
     /// Records in the lists.
@@ -122,29 +124,22 @@ protected:
         std::uint64_t dropped = 0;
         std::uint64_t rejected = 0;
         std::uint64_t late = 0;
-        std::uint64_t open_reservations = 0;  ///< that hold nodes
-        std::uint64_t missing = 0;  ///< nodes that reservations lack and no link asked for
     };
     using Shards = std::vector<cellist_shard>;
 
-    ListStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
-                const Shape& shape, const ListsOptions& options, cl_uint mode,
-                std::size_t node_bytes, std::uint64_t head_words_a_cell,
+    ListStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options,
+                cl_uint mode, std::size_t node_bytes, std::uint64_t head_words_a_cell,
                 std::uint64_t more_head_words = 0);
 
-    virtual void start_anew() {}
-    virtual void prepare_pass() { clear(); }
-    virtual bool finish_pass() = 0;
-    virtual bool review_pass(BuildReport& report) = 0;
     virtual void make_whole(bool without_pool) = 0;
 
     /// What kernels see of the container.
-    [[nodiscard]] cellist_view view() const;
+    [[nodiscard]] cellist_view view(Inserts inserts) const;
     void add_to(Arguments& arguments, const Memory& nodes, const Memory& heads,
                 const cellist_view& view) const;
-    [[nodiscard]] const RecordType& record() const { return definitions_.records.back(); }
+    [[nodiscard]] const RecordType& record() const { return kernels_.record(); }
     [[nodiscard]] std::uint64_t pool_nodes_with(std::uint64_t capacity_nodes) const;
-    /// Elements of the counters, hands and their owners included.
+    /// Elements of the counters, thread_slots and their owners included.
     [[nodiscard]] std::uint64_t counters_with(std::uint64_t capacity_nodes) const;
     [[nodiscard]] std::uint64_t bytes_with(std::uint64_t capacity_nodes) const;
     /// Device memory of the buffers that another pool would replace.
@@ -165,10 +160,10 @@ protected:
     void grow_pool(std::uint64_t capacity_nodes, const BuildReport& report);
     /// Enqueues the reading of the counters: they are there when it has arrived.
     [[nodiscard]] PendingRead read_counters(Shards& shards) const;
-    /// Of counters that are followed by so many hands. What is in these counts as free.
-    [[nodiscard]] static Counters sum(const Shards& shards, cl_uint hands);
-    /// The hands of threads with a pool of this capacity: see threads.clh.
-    [[nodiscard]] virtual cl_uint hands_with(std::uint64_t) const { return 0; }
+    /// Of counters that are followed by so many thread_slots. What is in these counts as free.
+    [[nodiscard]] static Counters sum(const Shards& shards, cl_uint thread_slots);
+    /// The thread_slots of threads with a pool of this capacity: see threads.clh.
+    [[nodiscard]] virtual cl_uint thread_slots_with(std::uint64_t) const { return 0; }
     /// Sets words of heads, and clears all counters. Does not block.
     void clear_heads_and_counters(const Memory& heads, cl_uint head, std::uint64_t first_word,
                                   std::uint64_t words);
@@ -181,9 +176,6 @@ protected:
     void update(BuildReport& report, const Counters& counters, std::uint64_t stored);
     /// Throws OverflowError if the policy or a limit forbids a pool of `demand` nodes.
     void require(std::uint64_t demand, const BuildReport& report) const;
-    /// A kernel of the library for this record.
-    [[nodiscard]] Kernel kernel(const std::string& name, std::string_view source,
-                                cl_uint mode) const;
 
     /// The state after a build, for a validation to compare with.
     struct Expected {
@@ -207,7 +199,7 @@ protected:
                                    const Arguments& arguments) const;
 
     MemoryOwner device_;
-    Definitions definitions_;
+    RecordKernels& kernels_;
     Shape shape_;
     ListsOptions options_;
     cl_uint mode_;
@@ -217,16 +209,14 @@ protected:
     std::shared_ptr<Expected> expected_ = std::make_shared<Expected>();  ///< of the last build
     cl_uint shard_bits_ = 0;
     cl_uint slots_ = 0;
-    bool reserves_ = false;  ///< reservations take their nodes at once
-    cl_uint rank_member_ = 0;
-    cl_uint rank_words_ = 0;
+    cl_uint key_member_ = 0;
+    cl_uint threshold_words_ = 0;
     std::uint32_t growths_ = 0;  ///< of this build
     Slice slice_;
-    bool open_ = false;  ///< for inserts
     Memory heads_;
     Memory nodes_;
     Memory shards_;
-    std::optional<Spare> spare_;
+    std::optional<BackBuffer> back_buffer_;
     std::optional<Kernel> clear_;
     Shards counters_;        ///< of the last pass
     ReadbackFence reading_;  ///< what a review waits for: the last reading of the pass
@@ -239,9 +229,7 @@ protected:
 }
 
 /// The storage that the options name, with empty lists. Throws Error if a size exceeds a limit.
-[[nodiscard]] std::unique_ptr<ListStorage> make_storage(std::shared_ptr<DeviceState> device,
-                                                        const Definitions& definitions,
-                                                        const Shape& shape,
+[[nodiscard]] std::unique_ptr<ListStorage> make_storage(RecordKernels& kernels, const Shape& shape,
                                                         const ListsOptions& options);
 
 }  // namespace cellist::detail

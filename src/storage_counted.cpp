@@ -5,13 +5,12 @@
 
 namespace cellist::detail {
 
-CountedStorage::CountedStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
-                               const Shape& shape, const ListsOptions& options)
-    : ListStorage(std::move(device), definitions, shape, options, CELLIST_CONTIGUOUS,
-                  definitions.records.back().size, 2, 1),
+CountedStorage::CountedStorage(RecordKernels& kernels, const Shape& shape,
+                               const ListsOptions& options)
+    : ListStorage(kernels, shape, options, CELLIST_CONTIGUOUS, kernels.record().size, 2, 1),
       scan_(device_, shape.cells(), counts_at()) {
     const std::uint64_t capacity = options.capacity_nodes.value_or(0);
-    if (const auto reason = refusal(capacity)) throw Error(*reason);
+    if (const auto reason = refusal(capacity)) throw MemoryError(*reason);
     allocate_pool(capacity);
     clear();
 }
@@ -21,14 +20,14 @@ void CountedStorage::clear() {
     expect_nothing();
 }
 
-void CountedStorage::add_to(Arguments& arguments) const {
-    if (mode_ != CELLIST_PARTITIONED) return ListStorage::add_to(arguments);
+void CountedStorage::add_to(Arguments& arguments, Inserts inserts) const {
+    if (mode_ != CELLIST_PARTITIONED) return ListStorage::add_to(arguments, inserts);
     const Partitions::Plan& plan = partitions_->plan();
-    cellist_view partitioned = view();
+    cellist_view partitioned = view(inserts);
     partitioned.capacity_nodes = static_cast<cl_uint>(plan.nodes);
     // Blocks from one counter: those that are being filled lie close together.
     partitioned.shard_bits = 0;
-    partitioned.hands = plan.hands;
+    partitioned.thread_slots = plan.thread_slots;
     partitioned.partition_bits = plan.bits;
     ListStorage::add_to(arguments, partitions_->nodes(), partitions_->heads(), partitioned);
 }
@@ -42,7 +41,8 @@ void CountedStorage::release_pool() noexcept {
     partitions_.reset();
 }
 
-void CountedStorage::start_anew() {
+void CountedStorage::start() {
+    ListStorage::start();
     counted_ = false;
     if (partitions_ && partitions_->plan().records >= capacity_nodes_) return;
     partitions_.reset();
@@ -60,7 +60,7 @@ std::unique_ptr<Partitions> CountedStorage::partitions_for_pool() const {
     return Partitions::make(device_, *plan);
 }
 
-void CountedStorage::prepare_pass() {
+void CountedStorage::begin_pass() {
     if (partitions_) {
         clear_heads_and_counters(partitions_->heads(), 0, 0, partitions_->plan().words_to_clear());
         mode_ = CELLIST_PARTITIONED;
@@ -72,7 +72,7 @@ void CountedStorage::prepare_pass() {
     }
 }
 
-bool CountedStorage::finish_pass() {
+bool CountedStorage::end_pass() {
     mode_ = CELLIST_CONTIGUOUS;
     if (partitions_) {
         move_from_partitions();
@@ -98,22 +98,20 @@ bool CountedStorage::finish_pass() {
 
 /// Enqueues what turns partitions into lists, if the pool has room for them.
 void CountedStorage::move_from_partitions() {
-    if (!move_partition_) {
-        partition_starts_.emplace(
-            kernel("cellist_partition_starts", kernels::partitions_cl, mode_));
-        move_partition_.emplace(kernel("cellist_move_partition", kernels::partitions_cl, mode_));
-    }
     const Partitions::Plan& plan = partitions_->plan();
-    partition_starts_->run(1, partitions_->heads().cl(), plan.hands, plan.partitions,
-                           partitions_->starts().cl());
+    const KernelFile file{"partitions.cl", kernels::partitions_cl};
+    kernels_.get({file}, "cellist_partition_starts", mode_)
+        .run(1, partitions_->heads().cl(), plan.thread_slots, plan.partitions,
+             partitions_->starts().cl());
     Arguments arguments;
     ListStorage::add_to(arguments);
     arguments.add_nodes(partitions_->nodes(), record().name);
     arguments.add(partitions_->heads().cl());
-    arguments.add(plan.hands);
+    arguments.add(plan.thread_slots);
     arguments.add(plan.bits);
     arguments.add(partitions_->starts().cl());
-    move_partition_->enqueue(Range(plan.partitions), arguments);
+    kernels_.get({file}, "cellist_move_partition", mode_)
+        .enqueue(Range(plan.partitions), arguments);
 }
 
 bool CountedStorage::review_partitions(BuildReport& report) {
@@ -147,7 +145,8 @@ bool CountedStorage::review_partitions(BuildReport& report) {
     return false;
 }
 
-bool CountedStorage::review_pass(BuildReport& report) {
+bool CountedStorage::review(BuildReport& report) {
+    reading_.wait();
     if (partitions_) return review_partitions(report);
     const Counters counting = sum(counting_, 0);
     const std::uint64_t demand = demand_.sum + counting.dropped;
@@ -217,13 +216,14 @@ std::vector<cl_uint> CountedStorage::counts(BuildReport& report) {
 
 /// Enqueues the comparison of the counts with the lists, and of the offsets with the expected offsets.
 PendingRead CountedStorage::find(Findings& findings, const Memory& offsets) {
-    if (!validate_)
-        validate_.emplace(
-            kernel("cellist_validate_contiguous", kernels::validate_contiguous_cl, mode_));
     Arguments arguments;
-    add_to(arguments);
+    add_to(arguments, Inserts::refused);
     arguments.add(offsets.cl());
-    return ListStorage::find(findings, *validate_, arguments);
+    return ListStorage::find(
+        findings,
+        kernels_.get({{"validate_contiguous.cl", kernels::validate_contiguous_cl}},
+                     "cellist_validate_contiguous", mode_),
+        arguments);
 }
 
 std::function<Validation()> CountedStorage::validate() {

@@ -5,14 +5,12 @@
 
 namespace cellist::detail {
 
-FixedStorage::FixedStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
-                           const Shape& shape, const ListsOptions& options)
-    : ListStorage(std::move(device), definitions, shape, options, CELLIST_FIXED,
-                  definitions.records.back().size, 1),
+FixedStorage::FixedStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options)
+    : ListStorage(kernels, shape, options, CELLIST_FIXED, kernels.record().size, 1),
       scan_(device_, shape.cells(), 0) {
     std::uint64_t slots = options.slots.value_or(4);
     if (!options.slots && refusal(nodes_with(slots))) slots = 0;
-    if (const auto reason = refusal(nodes_with(slots))) throw Error(*reason);
+    if (const auto reason = refusal(nodes_with(slots))) throw MemoryError(*reason);
     set_slots(slots);
     clear();
 }
@@ -35,14 +33,15 @@ void FixedStorage::clear() {
     expect_nothing();
 }
 
-bool FixedStorage::finish_pass() {
+bool FixedStorage::end_pass() {
     scan_.sum(heads_.cl(), slots_);
     reading_ = scan_.read_later(in_slots_);
     reading_ = read_counters(counters_);
     return false;
 }
 
-bool FixedStorage::review_pass(BuildReport& report) {
+bool FixedStorage::review(BuildReport& report) {
+    reading_.wait();
     const Counters counters = sum(counters_, 0);
     update(report, counters, in_slots_.sum);
     expected_->counts_hash = in_slots_.hash;

@@ -9,40 +9,38 @@ namespace {
 
 constexpr std::uint64_t default_capacity_nodes = 65536;
 
-/// What lies in the hands of threads is at most this part of a pool; smaller pools have none.
-constexpr std::uint64_t hands_part = 16;
+/// What lies in the thread_slots of threads is at most this part of a pool; smaller pools have none.
+constexpr std::uint64_t thread_blocks_part = 16;
 
 }  // namespace
 
-LinkedStorage::LinkedStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
-                             const Shape& shape, const ListsOptions& options)
-    : ListStorage(std::move(device), definitions, shape, options, CELLIST_LINKED,
-                  node_layout(definitions.records.back()).size, 1) {
+LinkedStorage::LinkedStorage(RecordKernels& kernels, const Shape& shape,
+                             const ListsOptions& options)
+    : ListStorage(kernels, shape, options, CELLIST_LINKED, node_layout(kernels.record()).size, 1) {
     std::uint64_t capacity =
         options.capacity_nodes.value_or(std::max(shape.cells(), default_capacity_nodes));
     if (!options.capacity_nodes && refusal(capacity)) capacity = 0;
-    if (const auto reason = refusal(capacity)) throw Error(*reason);
-    set_slice(slice_);
+    if (const auto reason = refusal(capacity)) throw MemoryError(*reason);
     allocate_pool(capacity);
     clear();
 }
 
 /// Where the pool does not grow it holds exactly what the options say: no thread may have free nodes for itself.
-cl_uint LinkedStorage::hands_with(std::uint64_t capacity_nodes) const {
-    if (!device_->info.threads || options_.overflow != Overflow::grow ||
-        options_.allocation != Allocation::sharded)
-        return 0;
-    const cl_uint hands = hands_of(device_->info);
-    const std::uint64_t nodes = std::uint64_t{hands} * CELLIST_BLOCK_NODES;
-    if (hands_part * nodes > capacity_nodes || capacity_nodes > CELLIST_CAPACITY_NODES_MAX - nodes)
+cl_uint LinkedStorage::thread_slots_with(std::uint64_t capacity_nodes) const {
+    if (!device_->info.one_thread_per_work_group || options_.overflow != Overflow::grow) return 0;
+    const cl_uint thread_slots = thread_slots_of(device_->info);
+    const std::uint64_t nodes = std::uint64_t{thread_slots} * CELLIST_BLOCK_NODES;
+    if (thread_blocks_part * nodes > capacity_nodes ||
+        capacity_nodes > CELLIST_CAPACITY_NODES_MAX - nodes)
         return 0;
     // Nor where that would take more memory than there may be.
     const std::uint64_t pool_bytes = (capacity_nodes + nodes) * node_bytes_;
-    const std::uint64_t counters = (1u << CELLIST_SHARD_BITS_MAX) + 1 + 2 * std::uint64_t{hands};
+    const std::uint64_t counters =
+        (1u << CELLIST_SHARD_BITS_MAX) + 1 + 2 * std::uint64_t{thread_slots};
     const bool fits = pool_bytes <= device_->info.max_allocation_bytes &&
                       heads_.size_bytes() + pool_bytes + counters * sizeof(cellist_shard) <=
                           options_.budget_bytes;
-    return fits ? hands : 0;
+    return fits ? thread_slots : 0;
 }
 
 void LinkedStorage::clear() {
@@ -50,37 +48,21 @@ void LinkedStorage::clear() {
     expect_nothing();
 }
 
-bool LinkedStorage::finish_pass() {
+bool LinkedStorage::end_pass() {
     reading_ = read_counters(counters_);
     return false;
 }
 
-bool LinkedStorage::review_pass(BuildReport& report) {
-    const Counters counters = sum(counters_, hands_with(capacity_nodes_));
-    const std::uint64_t unlinked = counters.open_reservations == 0 ? 0 : count_unlinked();
-    update(report, counters, counters.allocated - unlinked);
+bool LinkedStorage::review(BuildReport& report) {
+    reading_.wait();
+    const Counters counters = sum(counters_, thread_slots_with(capacity_nodes_));
+    update(report, counters, counters.allocated);
     if (counters.dropped == 0 || options_.overflow == Overflow::drop) return true;
 
-    const std::uint64_t demand = counters.allocated + counters.dropped + counters.missing;
+    const std::uint64_t demand = counters.allocated + counters.dropped;
     require(demand, report);
     grow_pool(demand, report);
     return false;
-}
-
-/// Nodes that reservations hold and no link has taken. Blocks.
-std::uint64_t LinkedStorage::count_unlinked() {
-    constexpr cl_uint zero = 0;
-    Memory memory(device_, 1, sizeof zero, "count of nodes");
-    memory.fill(&zero, sizeof zero, sizeof zero);
-    if (!unlinked_kernel_)
-        unlinked_kernel_.emplace(kernel("cellist_unlinked", kernels::unlinked_cl, mode_));
-    Arguments arguments;
-    add_to(arguments);
-    arguments.add(memory.cl());
-    unlinked_kernel_->enqueue(Range::padded(pool_nodes()), arguments);
-    cl_uint count = 0;
-    memory.read(&count, sizeof count);
-    return count;
 }
 
 void LinkedStorage::make_whole(bool without_pool) {
@@ -91,14 +73,7 @@ std::uint64_t LinkedStorage::nodes_for(std::uint64_t total, std::uint64_t, std::
     return total;
 }
 
-void LinkedStorage::set_slice(const Slice& slice) {
-    ListStorage::set_slice(slice);
-    reserves_ = options_.allocation == Allocation::reserved;
-}
-
-/// The pool has room for no more than the records of the slice, so reservations take no nodes.
 void LinkedStorage::reserve(std::uint64_t total, std::uint64_t) {
-    reserves_ = false;
     if (options_.overflow == Overflow::grow && capacity_nodes_ < total) make_pool(total);
 }
 
@@ -115,20 +90,19 @@ std::function<Validation()> LinkedStorage::validate() {
         Memory(device_.state(), (pool_nodes() + 31) / 32, sizeof zero, "validation buffer");
     check->findings.memory = memory_for_findings();
     check->reached.fill(&zero, sizeof zero, check->reached.size_bytes());
-    if (!validate_)
-        validate_.emplace(kernel("cellist_validate_linked", kernels::validate_linked_cl, mode_));
     Arguments arguments;
     add_to(arguments);
     arguments.add(check->reached.cl());
-    check->done = find(check->findings, *validate_, arguments);
+    Kernel& kernel = kernels_.get({{"validate_linked.cl", kernels::validate_linked_cl}},
+                                  "cellist_validate_linked", mode_);
+    check->done = find(check->findings, kernel, arguments);
     check->done = read_counters(check->shards);
-    return [check, expected = expected_, hands = hands_with(capacity_nodes_)] {
+    return [check, expected = expected_, thread_slots = thread_slots_with(capacity_nodes_)] {
         check->done.wait();
         const cellist_findings& found = check->findings.found;
-        // A list that leads to an unlinked node is broken there, with that node counted in.
         return Validation{found.broken, found.repeated,
                           expected->stored - std::min<std::uint64_t>(expected->stored, found.nodes),
-                          sum(check->shards, hands).late, bad_cell(found)};
+                          sum(check->shards, thread_slots).late, bad_cell(found)};
     };
 }
 

@@ -75,7 +75,8 @@ ListsOptions StorageTuner::options(Storage storage) const {
     if (options.overflow != Overflow::grow || most_stored_ == 0) return options;
     if (storage == Storage::fixed) {
         options.slots = static_cast<std::uint32_t>(longest_);
-        // Heads, nodes, and more than the counters take: the pool does not grow for a single long list.
+        // Heads, nodes, and more than the counters take: the pool does not grow for a single long
+        // list.
         options.budget_bytes =
             std::min(options.budget_bytes, 4 * container_.cells +
                                                container_.record_bytes * fixed_nodes_most() +
@@ -111,7 +112,8 @@ void StorageTuner::measured(const Measurement& trial) {
                             median_of(candidate.costs, &Cost::read_seconds)};
     }
     ++candidate.builds;
-    // Two, since the second build of a storage may be the first to allocate and compile what all others use.
+    // Two, since the second build of a storage may be the first to allocate and compile what all
+    // others use.
     if (candidate.builds > samples ||
         (candidate.costs.size() >= 2 &&
          total_seconds(candidate.median) > hopeless * total_seconds(best()->median)))
@@ -157,8 +159,8 @@ std::string StorageTuner::refusal(Storage storage) const {
         if (const std::string why = refusal_of_fixed(); !why.empty()) return "not tried: " + why;
     const Candidate* known = best();
     if (!profile_ || known == nullptr || stored_ < profile_->records() / 8) return {};
-    // The profile speaks for lists as large as its own that take what it says, and for nothing else:
-    // not for small ones, nor for inserts that all go to a few cells.
+    // The profile speaks for lists as large as its own that take what it says, and for nothing
+    // else: not for small ones, nor for inserts that all go to a few cells.
     double least = std::numeric_limits<double>::max();
     double most = 0;
     double ratio = least;
@@ -177,8 +179,8 @@ std::string StorageTuner::refusal(Storage storage) const {
 std::string StorageTuner::refusal_of_fixed() const {
     const ListsOptions& options = container_.options;
     if (options.overflow == Overflow::grow) {
-        if (longest_ >= walk_most)
-            return "a list has " + std::to_string(walk_most) + " records or more";
+        if (longest_ >= traverse_most)
+            return "a list has " + std::to_string(traverse_most) + " records or more";
         const std::uint64_t nodes = longest_ * container_.cells;
         if (nodes > fixed_nodes_most())
             return "a longest list of " + std::to_string(longest_) + " records would take " +
@@ -198,7 +200,8 @@ std::optional<Storage> StorageTuner::exclude(Storage storage, const std::string&
     failed.excluded = why;
     failed.for_ever = failed.for_ever || for_ever;
 
-    // Where a list is too long for slots, or a kernel does not repeat itself, the others do not mind.
+    // Where a list is too long for slots, or a kernel does not repeat itself, the others do not
+    // mind.
     std::optional<Storage> other;
     for (const Storage safe : {Storage::linked, Storage::counted})
         if (!other && candidate(safe).excluded.empty()) other = safe;

@@ -20,18 +20,18 @@ struct Measurement {
     std::uint64_t longest = 0;  ///< records of the longest list
 };
 
-/// Lists that are no longer than this many records are walked whole to measure what reading takes; of
-/// longer ones, as many records.
-inline constexpr std::uint32_t walk_most = 1u << 20;
+/// Lists that are no longer than this many records are walked whole to measure what reading takes;
+/// of longer ones, as many records.
+inline constexpr std::uint32_t traverse_most = 1u << 20;
 
-/// Chooses the storage of a container from what its builds took. Knows nothing of devices: it is told
-/// what was measured.
+/// Chooses the storage of a container from what its builds took. Knows nothing of devices: it is
+/// told what was measured.
 ///
-/// A trial builds with each storage in turn: once to warm up, then up to three times, fewer where the
-/// first two show that another storage is twice as fast. The median time of a build and `expected_reads`
-/// times that of a read decide. When the number of records has doubled or halved, another
-/// trial follows; ever more builds must have passed since the last, so that numbers that go to and fro
-/// do not keep the container on trial.
+/// A trial builds with each storage in turn: once to warm up, then up to three times, fewer where
+/// the first two show that another storage is twice as fast. The median time of a build and
+/// `expected_reads` times that of a read decide. When the number of records has doubled or halved,
+/// another trial follows; ever more builds must have passed since the last, so that numbers that go
+/// to and fro do not keep the container on trial.
 class StorageTuner {
 public:
     /// What does not change from build to build.

@@ -11,39 +11,35 @@ namespace cellist::detail {
 /// A head a cell and a pool of nodes with links; one pass.
 class LinkedStorage final : public ListStorage {
 public:
-    LinkedStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
-                  const Shape& shape, const ListsOptions& options);
+    LinkedStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options);
     void clear() override;
+    bool end_pass() override;
+    bool review(BuildReport& report) override;
     std::function<Validation()> validate() override;
-    void set_slice(const Slice& slice) override;
     std::uint64_t nodes_for(std::uint64_t total, std::uint64_t longest,
                             std::uint64_t cells) const override;
     void reserve(std::uint64_t total, std::uint64_t longest) override;
 
 private:
-    bool finish_pass() override;
-    bool review_pass(BuildReport& report) override;
     void make_whole(bool without_pool) override;
-    [[nodiscard]] cl_uint hands_with(std::uint64_t capacity_nodes) const override;
-
-    [[nodiscard]] std::uint64_t count_unlinked();
-
-    std::optional<Kernel> unlinked_kernel_;
-    std::optional<Kernel> validate_;
+    [[nodiscard]] cl_uint thread_slots_with(std::uint64_t capacity_nodes) const override;
 };
 
 /// The lists lie behind one another: two passes over the same kernels, count and fill. A single one where the
 /// records are put into partitions first and the library moves them.
 class CountedStorage final : public ListStorage {
 public:
-    CountedStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
-                   const Shape& shape, const ListsOptions& options);
+    CountedStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options);
     void clear() override;
+    void start() override;
+    void begin_pass() override;
+    bool end_pass() override;
+    bool review(BuildReport& report) override;
     std::function<Validation()> validate() override;
     std::uint64_t nodes_for(std::uint64_t total, std::uint64_t longest,
                             std::uint64_t cells) const override;
     void reserve(std::uint64_t total, std::uint64_t longest) override;
-    void add_to(Arguments& arguments) const override;
+    void add_to(Arguments& arguments, Inserts inserts) const override;
     void release_pool() noexcept override;
 
     /// What the counting pass counted: records of each cell, all of them dropped by the report.
@@ -51,10 +47,6 @@ public:
     [[nodiscard]] std::vector<cl_uint> counts(BuildReport& report);
 
 private:
-    void start_anew() override;
-    void prepare_pass() override;
-    bool finish_pass() override;
-    bool review_pass(BuildReport& report) override;
     void make_whole(bool without_pool) override;
 
     [[nodiscard]] std::unique_ptr<Partitions> partitions_for_pool() const;
@@ -70,21 +62,19 @@ private:
     Shards counting_;       ///< counters of the counting pass
     CellScan::Totals demand_;
     Findings filled_{{device_, 1, sizeof(cellist_findings), "findings"}};  ///< of the filling pass
-    std::optional<Kernel> validate_;
     std::unique_ptr<Partitions> partitions_;  ///< kept between builds; null where these count
     std::uint64_t no_place_up_to_ =
         0;                     ///< this capacity; a thread found none in the partitions for it
     cl_uint partitioned_ = 0;  ///< records of the last pass
-    std::optional<Kernel> partition_starts_;
-    std::optional<Kernel> move_partition_;
 };
 
 /// A number of slots for each cell; one pass.
 class FixedStorage final : public ListStorage {
 public:
-    FixedStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
-                 const Shape& shape, const ListsOptions& options);
+    FixedStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options);
     void clear() override;
+    bool end_pass() override;
+    bool review(BuildReport& report) override;
     std::function<Validation()> validate() override;
     void set_slice(const Slice& slice) override;
     std::uint64_t nodes_for(std::uint64_t total, std::uint64_t longest,
@@ -92,8 +82,6 @@ public:
     void reserve(std::uint64_t total, std::uint64_t longest) override;
 
 private:
-    bool finish_pass() override;
-    bool review_pass(BuildReport& report) override;
     void make_whole(bool without_pool) override;
 
     void set_slots(std::uint64_t slots);
@@ -107,33 +95,30 @@ private:
 /// ranks a word of their keys, one fills the slots; the next word follows where that leaves a tie.
 class NearestStorage final : public ListStorage {
 public:
-    NearestStorage(std::shared_ptr<DeviceState> device, const Definitions& definitions,
-                   const Shape& shape, const ListsOptions& options);
+    NearestStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options);
     void clear() override;
+    void start() override;
+    void begin_pass() override;
+    bool end_pass() override;
+    bool review(BuildReport& report) override;
     std::function<Validation()> validate() override;
     std::uint64_t nodes_for(std::uint64_t total, std::uint64_t longest,
                             std::uint64_t cells) const override;
     void reserve(std::uint64_t, std::uint64_t) override {}
 
 private:
-    void start_anew() override;
-    void prepare_pass() override;
-    bool finish_pass() override;
-    bool review_pass(BuildReport& report) override;
     void make_whole(bool without_pool) override;
 
-    void prepare_ranking();
-    void run(std::optional<Kernel>& step, const char* name, const Memory* choice = nullptr);
+    void prepare_threshold_pass();
+    void run(const char* name, const Memory* selection = nullptr);
     [[nodiscard]] std::uint64_t row(std::uint64_t number) const { return number * shape_.cells(); }
 
     CellScan scan_;
-    bool ranked_ = false;  ///< the next pass fills the slots
-    Shards ranking_;       ///< counters of the last ranking pass
+    bool selecting_ = false;  ///< the next pass fills the slots
+    Shards threshold_pass_;   ///< counters of the last ranking pass
     CellScan::Totals kept_;
-    cellist_choice choice_{};
-    Memory choice_memory_;
-    std::optional<Kernel> set_thresholds_;
-    std::optional<Kernel> check_choice_;
+    cellist_selection selection_{};
+    Memory selection_memory_;
 };
 
 }  // namespace cellist::detail

@@ -192,7 +192,6 @@ TEST_CASE("every record of random builds is stored, dropped or rejected", "[acco
         ListsOptions options;
         options.storage = all_storages[below(random, 3)];
         options.overflow = policies[below(random, 3)];
-        options.allocation = below(random, 4) == 0 ? Allocation::global : Allocation::sharded;
         const Expected exact = expect(demands, options);
         options.capacity_nodes = random_room(exact.demand, random);
         options.slots = static_cast<std::uint32_t>(random_room(exact.longest, random));
@@ -227,7 +226,7 @@ TEST_CASE("every record of random builds is stored, dropped or rejected", "[acco
         const HostLists<Item> found = lists.download();
         REQUIRE(found.records().size() == stored);
         REQUIRE(is_sub_multiset(found, input));
-        ++by_storage[static_cast<std::size_t>(options.storage)];
+        ++by_storage[static_cast<std::size_t>(Storage{options.storage})];
         short_of_room += fits ? 0 : 1;
     }
     std::cout << "accounting: " << cases << " cases: " << by_storage[0] << " linked, "

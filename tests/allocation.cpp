@@ -1,4 +1,4 @@
-// Every way to get nodes fills the pool to its last one, and no record is lost on the way.
+// Allocation fills the pool to its last one, and no record is lost on the way.
 #include "support/inserts.hpp"
 #include "support/storages.hpp"
 
@@ -43,28 +43,9 @@ kernel void by_divergent_insert(CELLIST_LISTS(Item, lists), uint run, uint each)
     }
 }
 
-kernel void by_link(CELLIST_LISTS(Item, lists), uint run, uint each)
-{
-    const uint i = item_index();
-    cellist_reservation nodes = cellist_reserve(lists, each);
-    for (uint k = 0; k < each; ++k) {
-        Item item = { (float)k, i * each + k };
-        cellist_link(lists, cell_of(i, run, cellist_cells(lists)), nodes, item);
-    }
-}
-
-kernel void by_insert_all(CELLIST_LISTS(Item, lists), uint run, uint each)
-{
-    local cellist_group group;
-    const uint i = item_index();
-    for (uint k = 0; k < each; ++k) {
-        Item item = { (float)k, i * each + k };
-        cellist_insert_all(lists, group, 1, cell_of(i, run, cellist_cells(lists)), item);
-    }
-}
 )";
 
-constexpr std::array kernels{"by_insert", "by_divergent_insert", "by_link", "by_insert_all"};
+constexpr std::array kernels{"by_insert", "by_divergent_insert"};
 
 cl_uint cell_of(cl_uint i, cl_uint run, cl_uint cells) { return i / run * 7 % cells; }
 
@@ -108,18 +89,16 @@ std::vector<Ranges> ranges() {
     return all;
 }
 
-void fill(const char* name, Storage storage, Allocation allocation, const Ranges& over,
-          std::uint64_t capacity, cl_uint run, cl_uint each) {
-    INFO(name << ", storage " << name_of(storage) << ", allocation " << static_cast<int>(allocation)
-              << ", work-groups of " << over.range.local[0] << ", " << over.range.local[1] << ", "
-              << over.range.local[2] << ", capacity " << capacity << ", runs of " << run << ", "
-              << each << " records each");
+void fill(const char* name, Storage storage, const Ranges& over, std::uint64_t capacity,
+          cl_uint run, cl_uint each) {
+    INFO(name << ", storage " << name_of(storage) << ", work-groups of " << over.range.local[0]
+              << ", " << over.range.local[1] << ", " << over.range.local[2] << ", capacity "
+              << capacity << ", runs of " << run << ", " << each << " records each");
     Lists<Item> lists(device(), {50},
                       {.storage = storage,
                        .overflow = Overflow::drop,
                        .capacity_nodes = capacity,
-                       .slots = static_cast<std::uint32_t>(capacity),
-                       .allocation = allocation});
+                       .slots = static_cast<std::uint32_t>(capacity)});
     Kernel kernel(device(), source, name, lists);
     const BuildReport report = lists.build(kernel, over.range, run, each);
     const std::uint64_t attempted = std::uint64_t{over.items} * each;
@@ -138,48 +117,40 @@ void fill(const char* name, Storage storage, Allocation allocation, const Ranges
     REQUIRE(is_sub_multiset(lists.download(), over.items, run, each));
 }
 
-TEST_CASE("every way to allocate fills the pool to its last node, from work-groups of any form") {
+TEST_CASE("inserts fill the pool to its last node, from work-groups of any form") {
     for (const char* name : kernels)
-        for (const Allocation allocation : all_allocations)
-            for (const Ranges& over : ranges())
-                for (const std::uint64_t capacity :
-                     {std::uint64_t{over.items} * 3 - 1, std::uint64_t{over.items} * 3,
-                      std::uint64_t{over.items} * 3 + 1})
-                    fill(name, Storage::linked, allocation, over, capacity, 5, 3);
+        for (const Ranges& over : ranges())
+            for (const std::uint64_t capacity :
+                 {std::uint64_t{over.items} * 3 - 1, std::uint64_t{over.items} * 3,
+                  std::uint64_t{over.items} * 3 + 1})
+                fill(name, Storage::linked, over, capacity, 5, 3);
 }
 
-TEST_CASE("every way to allocate fills pools of any size, whoever shares a cell") {
+TEST_CASE("inserts fill pools of any size, whoever shares a cell") {
     const Ranges over = ranges()[3];
     for (const char* name : kernels)
         for (const std::uint64_t capacity : {0u, 1u, 255u, 256u, 2048u, 4099u})
             for (const cl_uint run : {1u, 2u, 16u, 40u, 1024u})
                 for (const cl_uint each : {1u, 5u})
-                    for (const Allocation allocation : {Allocation::sharded, Allocation::reserved})
-                        fill(name, Storage::linked, allocation, over, capacity, run, each);
+                    fill(name, Storage::linked, over, capacity, run, each);
 }
 
-TEST_CASE("every way to insert serves every storage") {
+TEST_CASE("straight and divergent inserts serve every storage") {
     const Ranges over = ranges()[3];
     for (const char* name : kernels)
         for (const Storage storage : all_storages)
             for (const std::uint64_t capacity : {0u, 20u, 3000u, 10'000u})
                 for (const cl_uint run : {1u, 16u, 1024u})
-                    fill(name, storage, Allocation::reserved, over, capacity, run, 3);
+                    fill(name, storage, over, capacity, run, 3);
 }
 
-TEST_CASE("every way to insert grows the pool to the exact demand") {
-    const auto [storage, allocation] = GENERATE(std::pair(Storage::linked, Allocation::sharded),
-                                                std::pair(Storage::linked, Allocation::global),
-                                                std::pair(Storage::linked, Allocation::reserved),
-                                                std::pair(Storage::counted, Allocation::sharded),
-                                                std::pair(Storage::fixed, Allocation::sharded));
+TEST_CASE("straight and divergent inserts grow the pool to the exact demand") {
+    CELLIST_EACH_STORAGE(storage);
     for (const char* name : kernels)
         for (const cl_uint each : {1u, 8u, 300u}) {
-            INFO(name << ", storage " << name_of(storage) << ", allocation " << name_of(allocation)
-                      << ", " << each << " records each");
-            Lists<Item> lists(
-                device(), {50},
-                {.storage = storage, .capacity_nodes = 5000, .slots = 1, .allocation = allocation});
+            INFO(name << ", " << each << " records each");
+            Lists<Item> lists(device(), {50},
+                              {.storage = storage, .capacity_nodes = 5000, .slots = 1});
             Kernel kernel(device(), source, name, lists);
             const BuildReport report = lists.build(kernel, 4096, cl_uint{3}, each);
             require_complete(report, std::uint64_t{4096} * each);
@@ -191,11 +162,11 @@ TEST_CASE("every way to insert grows the pool to the exact demand") {
         }
 }
 
-// ---- the hands of threads ----------------------------------------------------------------------
+// ---- the thread_blocks of threads ----------------------------------------------------------------------
 
-TEST_CASE("a pool that grows holds its capacity in one pass, whatever ways to insert are mixed") {
+TEST_CASE("a pool that grows holds its capacity in one pass, whatever kernels insert") {
     // With threads that have nodes of their own, where the device has such, and without.
-    for (const char* options : {"", "-DCELLIST_THREADS=0"}) {
+    for (const char* options : {"", "-DCELLIST_ONE_THREAD_PER_WORK_GROUP=0"}) {
         constexpr cl_uint items = 4096;
         constexpr cl_uint each = 16;
         constexpr std::uint64_t capacity = kernels.size() * items * each;
@@ -231,128 +202,23 @@ TEST_CASE("a node in the hand of a thread is free") {
 kernel void steal(CELLIST_LISTS(Item, lists), global uint* found)
 {
     const cellist_view lists_view = cellist_view_of(lists);
-    volatile global cellist_hand* hands = cellist_hands(lists_shards, lists_view);
+    volatile global cellist_thread_block* thread_blocks = cellist_thread_blocks(lists_shards, lists_view);
     *found = 0;
-    for (uint i = 0; i < lists_view.hands; ++i) {
-        if (hands[i].node != hands[i].last) lists_heads[0] = hands[i].node;
-        *found += hands[i].last - hands[i].node + hands[i].end - hands[i].next;
+    for (uint i = 0; i < lists_view.thread_slots; ++i) {
+        if (thread_blocks[i].node != thread_blocks[i].last) lists_heads[0] = thread_blocks[i].node;
+        *found += thread_blocks[i].last - thread_blocks[i].node + thread_blocks[i].end - thread_blocks[i].next;
     }
 }
 )",
                  "steal", lists);
     Buffer<cl_uint> found(device(), 1);
     steal.run(1, lists, found);
-    if (!device().info().threads) {
+    if (!device().info().one_thread_per_work_group) {
         REQUIRE(found.download()[0] == 0);
         return;
     }
     REQUIRE(found.download()[0] % 256 == 256 - 100);
     REQUIRE(lists.validate().broken_links == 1);
-}
-
-// ---- a whole work-group ------------------------------------------------------------------------
-
-constexpr auto all_source = R"(
-#include <cellist/lists.clh>
-
-// In round k, the work-items with i % (k + 1) == 0 insert; those with i % 10 == 9 outside of the shape.
-kernel void rounds(CELLIST_LISTS(Item, lists), uint count, uint rounds, global uint* taken)
-{
-    local cellist_group group;
-    const uint i = get_global_id(0);
-    for (uint k = 0; k < rounds; ++k) {
-        const int inserts = i < count && i % (k + 1) == 0;
-        uint cell = CELLIST_NONE;
-        Item item = { (float)k, i };
-        if (inserts && i % 10 != 9) cell = (i + k) % cellist_cells(lists);
-        const int stored = cellist_insert_all(lists, group, inserts, cell, item);
-        if (i < count) taken[i * rounds + k] = stored;
-    }
-}
-
-kernel void two(CELLIST_LISTS(Item, a), CELLIST_LISTS(Item, b))
-{
-    local cellist_group group;
-    const uint i = get_global_id(0);
-    Item item = { 0.0f, i };
-    cellist_insert_all(a, group, i % 2, i % cellist_cells(a), item);
-    cellist_insert_all(b, group, i % 3 == 0, i % cellist_cells(b), item);
-}
-)";
-
-TEST_CASE("small work-groups insert together into a small pool", "[oclgrind]") {
-    CELLIST_EACH_STORAGE(storage);
-    Lists<Item> lists(
-        device(), {3},
-        {.storage = storage, .overflow = Overflow::drop, .capacity_nodes = 70, .slots = 20});
-    Kernel kernel(device(), all_source, "rounds", lists);
-    const Buffer<cl_uint> taken(device(), 60 * 2);
-    const BuildReport report =
-        lists.build(kernel, Range::padded(60, 16), cl_uint{60}, cl_uint{2}, taken);
-    REQUIRE(report.rejected == 6);
-    REQUIRE(report.stored + report.dropped == 84);
-    if (storage == Storage::linked) REQUIRE(report.stored == 70);
-    require_sound(lists, report.stored);
-}
-
-TEST_CASE("some work-items of a group insert together, in rounds") {
-    CELLIST_EACH_STORAGE(storage);
-    constexpr cl_uint count = 1000;
-    constexpr cl_uint rounds = 4;
-    for (const std::uint64_t capacity : {0u, 700u, 5000u})
-        for (const std::size_t group : {1u, 7u, 64u, 256u}) {
-            INFO("capacity " << capacity << ", work-groups of " << group);
-            Lists<Item> lists(device(), {33},
-                              {.storage = storage,
-                               .overflow = Overflow::drop,
-                               .capacity_nodes = capacity,
-                               .slots = static_cast<std::uint32_t>(capacity / 33)});
-            Kernel kernel(device(), all_source, "rounds", lists);
-            const Buffer<cl_uint> device_taken(device(), std::size_t{count} * rounds);
-            const BuildReport report =
-                lists.build(kernel, Range::padded(count, group), count, rounds, device_taken);
-            const std::vector<cl_uint> taken = device_taken.download();
-
-            Oracle<Item> oracle;
-            std::uint64_t demand = 0;
-            std::uint64_t rejected = 0;
-            for (cl_uint i = 0; i < count; ++i)
-                for (cl_uint k = 0; k < rounds; ++k) {
-                    const bool inserts = i % (k + 1) == 0;
-                    rejected += inserts && i % 10 == 9 ? 1 : 0;
-                    demand += inserts && i % 10 != 9 ? 1 : 0;
-                    if (taken[i * rounds + k] == 0) continue;
-                    REQUIRE((inserts && i % 10 != 9));
-                    oracle.emplace((i + k) % 33, Item{static_cast<cl_float>(k), i});
-                }
-            REQUIRE(report.rejected == rejected);
-            REQUIRE(report.stored + report.dropped == demand);
-            REQUIRE(report.stored == oracle.size());
-            if (storage == Storage::linked) REQUIRE(report.stored == std::min(demand, capacity));
-            require_sound(lists, report.stored);
-            // Which records of a counted build are kept is settled in the pass that fills.
-            require_same(lists.download(), oracle);
-        }
-}
-
-TEST_CASE("a work-group inserts into containers of different storages") {
-    for (const Storage first : all_storages)
-        for (const Storage second : all_storages) {
-            INFO(name_of(first) << " and " << name_of(second));
-            Lists<Item> a(device(), {10}, {.storage = first, .capacity_nodes = 3, .slots = 1});
-            Lists<Item> b(device(), {7}, {.storage = second, .capacity_nodes = 3, .slots = 1});
-            Kernel two(device(), all_source, "two", a, b);
-            const auto [in_a, in_b] = cellist::build([&] { two.run(1024, a, b); }, a, b);
-            require_complete(in_a, 512);
-            require_complete(in_b, 342);
-            Oracle<Item> of_a, of_b;
-            for (cl_uint i = 0; i < 1024; ++i) {
-                if (i % 2 != 0) of_a.emplace(i % 10, Item{0.0f, i});
-                if (i % 3 == 0) of_b.emplace(i % 7, Item{0.0f, i});
-            }
-            require_same(a.download(), of_a);
-            require_same(b.download(), of_b);
-        }
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 // Storage::automatic does what the other storages do, while it tries them, when one is chosen, and when
 // the one that was chosen fails. Which is chosen depends on the device: tests that need a certain one
 // tell the tuner of times of their own.
-#include "storage_tuner.hpp"
 #include "support/errors.hpp"
 #include "support/inserts.hpp"
+#include "support/internals.hpp"
 #include "support/storages.hpp"
 
 namespace cellist::test {
@@ -14,7 +14,7 @@ using detail::StorageTuner;
 /// As if the trial had come out in favour of a storage, for lists like these.
 void choose(const Lists<Item>& lists, Storage storage, std::uint64_t stored,
             std::uint64_t longest) {
-    StorageTuner& tuner = *lists.core().tuner();
+    StorageTuner& tuner = *tuner_of(lists);
     while (tuner.on_trial())
         tuner.measured({{tuner.storage() == storage ? 1e-3 : 1.0, 1e-3}, stored, longest});
     INFO(tuner.reason());
@@ -72,7 +72,7 @@ TEST_CASE("lists are complete in every build of a trial and after it") {
     Inserter inserter(lists);
     std::vector<Storage> used;
     int builds = 0;
-    for (; lists.core().tuner()->on_trial() || builds < 15; ++builds) {
+    for (; tuner_of(lists)->on_trial() || builds < 15; ++builds) {
         REQUIRE(builds < 20);
         Inserts<Item> inserts = random_inserts(4000u + 10u * below(random, 10), 50, random);
         inserts.add(50, {});
@@ -87,14 +87,14 @@ TEST_CASE("lists are complete in every build of a trial and after it") {
         REQUIRE(std::find(used.begin(), used.end(), storage) != used.end());
     REQUIRE(contains(lists.storage_reason(), "= "));
     REQUIRE(contains(lists.storage_reason(), name_of(lists.storage())));
-    REQUIRE(used.back() == lists.core().tuner()->storage());
+    REQUIRE(used.back() == tuner_of(lists)->storage());
 }
 
 TEST_CASE("the other storages say that they were asked for") {
     CELLIST_EACH_STORAGE(storage);
     const Lists<Item> lists(device(), {10}, {.storage = storage});
     REQUIRE(lists.storage() == storage);
-    REQUIRE(lists.core().tuner() == nullptr);
+    REQUIRE(tuner_of(lists) == nullptr);
     REQUIRE(contains(lists.storage_reason(), std::string(name_of(storage)) + ":"));
 }
 
@@ -260,7 +260,7 @@ TEST_CASE("stop throws when the records are more than the capacity, in a trial a
         require_same(lists.download(), oracle_of(fits, 50));
         REQUIRE(lists.capacity_nodes() <= 1000);
     }
-    REQUIRE_FALSE(lists.core().tuner()->on_trial());
+    REQUIRE_FALSE(tuner_of(lists)->on_trial());
 }
 
 TEST_CASE("drop keeps as many records as the capacity, whatever the storage") {
@@ -411,7 +411,7 @@ TEST_CASE(
         REQUIRE(all.size() == 4096);
         require_sound(lists, 0);
     }
-    REQUIRE(lists.core().tuner()->on_trial() == !chosen);
+    REQUIRE(tuner_of(lists)->on_trial() == !chosen);
 }
 
 TEST_CASE("slices fit the budget") {
@@ -456,7 +456,7 @@ TEST_CASE("an exception in any build of a trial leaves an empty container, and t
         require_complete(lists.build([&] { scene.insert(lists); }), 4096);
         require_lists(lists, inserts);
     }
-    REQUIRE_FALSE(lists.core().tuner()->on_trial());
+    REQUIRE_FALSE(tuner_of(lists)->on_trial());
 }
 
 TEST_CASE("a shape without cells, and records of odd sizes") {

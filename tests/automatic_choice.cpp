@@ -155,7 +155,7 @@ TEST_CASE("fixed is tried where its slots are at most four times the records, or
     }
     SECTION("a list that was not walked to its end") {
         StorageTuner tuner(container({}, 1), {});
-        try_all(tuner, best_fixed, 4'000'000, detail::walk_most);
+        try_all(tuner, best_fixed, 4'000'000, detail::traverse_most);
         REQUIRE(tuner.storage() != Storage::fixed);
     }
     SECTION("the budget of the user is kept") {

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "support/errors.hpp"
+#include "support/internals.hpp"
 #include "support/sorted.hpp"
 
 namespace cellist::test {
@@ -53,7 +54,7 @@ struct Corrupt {
           inserter_(lists) {
         std::mt19937 random(180);
         inserts_ = random_inserts(nodes, cells, random);
-        lists.core().sort_as_on(division);
+        sort_as_on(lists, division);
     }
 
     void restore() { inserter_.build(lists, inserts_); }

@@ -1,5 +1,5 @@
-// Several devices on one context, each with a queue of its own: what a kernel of one does with lists and
-// buffers of another is ordered with the other's queue.
+// Several devices on one context, each with a queue of its own: what a kernel of one does with
+// lists and buffers of another is ordered with the other's queue.
 #include <optional>
 
 #include "support/errors.hpp"
@@ -108,6 +108,32 @@ TEST_CASE("a build waits for the kernels of another queue") {
     for (const BuildReport& report : pending.get()) require_complete(report, count);
     require_lists(lists);
     require_lists(others);
+}
+
+TEST_CASE("one build of containers of two contexts is refused, and names both") {
+    Scene scene;
+    const cl::Context other_context(scene.cl_device);
+    const Device elsewhere(other_context, cl::CommandQueue(other_context, scene.cl_device));
+    Lists<Item> here(scene.owner, {cells});
+    Lists<Item> there(elsewhere, {3});
+    Kernel insert(scene.owner, source, "insert", here);
+    Kernel insert_there(elsewhere, source, "insert", there);
+    require_complete(here.build(insert, count), count);
+    bool has_run = false;
+    const auto refused = [&](auto&& build) {
+        const auto error = error_of(build);
+        INFO(error.what());
+        REQUIRE(contains(error.what(), "lists of Item of shape 17 on " + elsewhere.info().name));
+        REQUIRE(contains(error.what(), "lists of Item of shape 3 on " + elsewhere.info().name));
+        REQUIRE(contains(error.what(), "contexts"));
+        REQUIRE_FALSE(has_run);
+    };
+    const auto run = [&] { has_run = true; };
+    refused([&] { cellist::build(run, here, there); });
+    refused([&] { (void)cellist::build_async(run, there, here); });
+    // The lists are as they were, and each is built alone.
+    require_lists(here);
+    require_complete(there.build(insert_there, count), count);
 }
 
 TEST_CASE("reading and writing wait for the kernels of another queue, and these for them") {

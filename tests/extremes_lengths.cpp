@@ -155,7 +155,7 @@ kernel void nearest_of_hot(CELLIST_LISTS(Item, lists), global uint* ids)
 )";
 
 void require_hot_cell(const ListsOptions& options) {
-    INFO("storage " << name_of(options.storage) << ", allocation " << name_of(options.allocation));
+    INFO("storage " << name_of(options.storage));
     Lists<Item> lists(device(), {3}, options);
     Kernel insert(device(), hot_source, "insert_hot", lists);
     require_complete(lists.build(insert, inserting), inserting);
@@ -176,8 +176,7 @@ void require_hot_cell(const ListsOptions& options) {
 }
 
 TEST_CASE("every work-item inserts into the same cell", "[extremes]") {
-    for (const Allocation allocation : all_allocations)
-        require_hot_cell({.allocation = allocation});
+    require_hot_cell({});
     require_hot_cell({.storage = Storage::counted});
     require_hot_cell({.storage = Storage::fixed});
     std::cout << "extremes: a cell that " << inserting << " work-items insert into, in 5 ways"
@@ -185,11 +184,7 @@ TEST_CASE("every work-item inserts into the same cell", "[extremes]") {
 }
 
 TEST_CASE("the nearest of what every work-item inserts into the same cell are kept", "[extremes]") {
-    Lists<Item> lists(device(), {3},
-                      {.storage = Storage::fixed,
-                       .overflow = Overflow::keep_nearest,
-                       .slots = 3,
-                       .nearest_by = "key"});
+    Lists<Item> lists(device(), {3}, {.storage = nearest(&Item::key, 3)});
     Kernel insert(device(), hot_source, "insert_hot", lists);
     const BuildReport report = lists.build(insert, inserting);
     REQUIRE(report.stored == 3);

@@ -1,5 +1,5 @@
 // The nearest records by keys at the borders of their types are the first of the sorted lists: those that
-// kernels take, and those that Overflow::keep_nearest keeps.
+// kernels take, and those that nearest() keeps.
 #include <iostream>
 
 #include "support/extremes.hpp"
@@ -101,11 +101,7 @@ template <class T>
 void require_keeps_nearest(const Inserts<T>& inserts, std::uint32_t slots, const char* name,
                            auto key) {
     INFO("by " << name << ", " << slots << " slots");
-    Lists<T> lists(device(), {lengths.size()},
-                   {.storage = Storage::fixed,
-                    .overflow = Overflow::keep_nearest,
-                    .slots = slots,
-                    .nearest_by = name});
+    Lists<T> lists(device(), {lengths.size()}, {.storage = nearest(key, slots)});
     const BuildReport report = Inserter(lists).build(lists, inserts);
     REQUIRE(report.stored + report.dropped == inserts.size());
     require_sound(lists, report.stored);

@@ -1,4 +1,4 @@
-// Overflow::keep_nearest keeps exactly the records of each cell that come first, ties included, whatever
+// nearest() keeps exactly the records of each cell that come first, ties included, whatever
 // the order of insertion.
 #include <bit>
 
@@ -8,13 +8,6 @@
 
 namespace cellist::test {
 namespace {
-
-ListsOptions nearest(std::uint32_t slots, const char* by) {
-    return {.storage = Storage::fixed,
-            .overflow = Overflow::keep_nearest,
-            .slots = slots,
-            .nearest_by = by};
-}
 
 /// Requires that each cell holds the first `slots` of its records by `rank`, in any order.
 template <class T>
@@ -57,7 +50,7 @@ TEST_CASE("the records that come first are kept, for every number of slots", "[o
     for (cl_uint i = 0; i < 7; ++i) inserts.add(12 + i, {-1000.0f, i});
     for (const std::uint32_t slots : {0u, 1u, 2u, 8u, 41u, 100u}) {
         INFO(slots << " slots");
-        Lists<Item> lists(device(), {4, 3}, nearest(slots, "key"));
+        Lists<Item> lists(device(), {4, 3}, {.storage = nearest(&Item::key, slots)});
         const BuildReport report = Inserter(lists).build(lists, inserts);
         require_report(report, 507, 7, kept(oracle_of(inserts, 12), 12, slots));
         require_sound(lists, report.stored);
@@ -70,7 +63,7 @@ TEST_CASE("hundreds of thousands of records are kept from in few passes") {
     Inserts<Item> inserts;
     for (cl_uint i = 0; i < 300'000; ++i)
         inserts.add(below(random, 1000), {std::bit_cast<cl_float>(below(random, 0x7F000000u)), i});
-    Lists<Item> lists(device(), {1000}, nearest(16, "key"));
+    Lists<Item> lists(device(), {1000}, {.storage = nearest(&Item::key, 16)});
     Inserter inserter(lists);
     for (int i = 0; i < 2; ++i) {
         const BuildReport report = inserter.build(lists, inserts);
@@ -87,7 +80,7 @@ TEST_CASE("ties are decided by the other members, the same in every order of ins
     Inserts<Item> inserts;
     for (cl_uint i = 0; i < 3000; ++i)
         inserts.add(below(random, 7), {static_cast<cl_float>(below(random, 4)), i / 3});
-    Lists<Item> lists(device(), {7}, nearest(10, "key"));
+    Lists<Item> lists(device(), {7}, {.storage = nearest(&Item::key, 10)});
     Inserter inserter(lists);
     std::vector<Item> first;
     for (int i = 0; i < 20; ++i) {
@@ -104,7 +97,7 @@ TEST_CASE("ties are decided by the other members, the same in every order of ins
 }
 
 TEST_CASE("ties that take more than the budget end a build, and leave the lists usable") {
-    ListsOptions options = nearest(10, "key");
+    ListsOptions options{.storage = nearest(&Item::key, 10)};
     options.budget_bytes = Lists<Item>(device(), {7}, options).pool_bytes();
     Lists<Item> lists(device(), {7}, options);
     Inserts<Item> ties, others;
@@ -125,36 +118,38 @@ TEST_CASE("ties that take more than the budget end a build, and leave the lists 
 TEST_CASE("records that are the same in every member are kept as often as there is room") {
     Inserts<Item> inserts;
     for (cl_uint i = 0; i < 1000; ++i) inserts.add(i % 3, {2.5f, 7});
-    Lists<Item> lists(device(), {3}, nearest(5, "key"));
+    Lists<Item> lists(device(), {3}, {.storage = nearest(&Item::key, 5)});
     const BuildReport report = Inserter(lists).build(lists, inserts);
     require_report(report, 1000, 0, 15);
     require_first(lists, inserts, 5, by_key);
 }
 
-struct Arrays {
-    cl_uint key;
-    cl_uint numbers[2];
-};
-CELLIST_STRUCT(Arrays, key, numbers);
-
-TEST_CASE("what cannot keep the nearest is refused") {
-    const auto refused = [](const ListsOptions& options) {
-        const auto error = error_of([&] { Lists<Item>(device(), {5}, options); });
-        return std::string(error.what());
-    };
-    REQUIRE(contains(refused(nearest(4, "depth")), "depth"));
-    REQUIRE(contains(refused(nearest(4, "")), "scalar member of Item"));
-    ListsOptions options = nearest(4, "key");
-    options.slots.reset();
-    REQUIRE(contains(refused(options), "slots"));
-    for (const Storage storage : {Storage::linked, Storage::counted}) {
-        options = nearest(4, "key");
-        options.storage = storage;
-        options.capacity_nodes = 10;
-        REQUIRE(contains(refused(options), "Storage::fixed"));
+TEST_CASE("no option but the budget changes what keeps the nearest") {
+    CELLIST_RANDOM(random, 253u);
+    const Inserts<Item> inserts = random_inserts(500, 5, random);
+    for (const Overflow overflow : {Overflow::grow, Overflow::stop, Overflow::drop}) {
+        Lists<Item> lists(device(), {5},
+                          {.storage = nearest(&Item::key, 4),
+                           .overflow = overflow,
+                           .capacity_nodes = 3,
+                           .slots = 1});
+        REQUIRE(lists.storage() == Storage::fixed);
+        require_report(Inserter(lists).build(lists, inserts), 500, 0, 20);
+        require_sound(lists, 20);
+        require_first(lists, inserts, 4, by_key);
     }
-    const auto error = error_of([] { Lists<Arrays>(device(), {5}, nearest(4, "numbers")); });
-    REQUIRE(contains(error.what(), "scalar member"));
+}
+
+struct Depth {
+    cl_float value;
+};
+CELLIST_STRUCT(Depth, value);
+
+TEST_CASE("a member of another record cannot keep the nearest") {
+    const auto error =
+        error_of([] { Lists<Item>(device(), {5}, {.storage = nearest(&Depth::value, 4)}); });
+    REQUIRE(contains(error.what(), "Depth"));
+    REQUIRE(contains(error.what(), "Item"));
 }
 
 TEST_CASE("a build that keeps the nearest is started without blocking, and beside others") {
@@ -162,7 +157,7 @@ TEST_CASE("a build that keeps the nearest is started without blocking, and besid
     Inserts<Item> inserts;
     for (cl_uint i = 0; i < 3000; ++i)
         inserts.add(below(random, 7), {static_cast<cl_float>(below(random, 4)), i});
-    Lists<Item> few(device(), {7}, nearest(10, "key"));
+    Lists<Item> few(device(), {7}, {.storage = nearest(&Item::key, 10)});
     const Storage other = GENERATE(Storage::linked, Storage::counted, Storage::fixed);
     Lists<Item> all(device(), {7}, {.storage = other, .capacity_nodes = 10});
     Kernel kernel(device(), insert_source("Item"), "insert_all", few);
@@ -185,7 +180,7 @@ TEST_CASE("a build that keeps the nearest is started without blocking, and besid
 
 TEST_CASE("a shape without cells keeps nothing") {
     CELLIST_RANDOM(random, 256u);
-    Lists<Item> lists(device(), {0}, nearest(4, "key"));
+    Lists<Item> lists(device(), {0}, {.storage = nearest(&Item::key, 4)});
     require_report(Inserter(lists).build(lists, random_inserts(144, 50, random)), 144, 144, 0);
 }
 

@@ -34,13 +34,8 @@ TEST_CASE("slots whose heads no device has room for are refused, and no limit is
         for (const Shape& shape : {Shape{1}, Shape{5}, Shape{0x7FFFFFFF}}) {
             const double bytes = 4.0 * slots * static_cast<double>(shape.cells());
             if (bytes <= static_cast<double>(device().info().max_allocation_bytes)) continue;
-            const auto error = error_of([&] {
-                Lists<Item>(device(), shape,
-                            {.storage = Storage::fixed,
-                             .overflow = Overflow::keep_nearest,
-                             .slots = slots,
-                             .nearest_by = "key"});
-            });
+            const auto error = error_of(
+                [&] { Lists<Item>(device(), shape, {.storage = nearest(&Item::key, slots)}); });
             INFO(error.what());
             REQUIRE_FALSE(contains(error.what(), "limit of 0 "));
             REQUIRE((contains(error.what(), "lower slots") || contains(error.what(), "cells (")));

@@ -10,17 +10,14 @@ TEST_CASE("a small container is built, grown, sorted, validated and downloaded",
     CELLIST_EACH_STORAGE(storage);
     CELLIST_RANDOM(random, 170u);
     const Inserts<Item> inserts = random_inserts(200, 13, random);
-    for (const Allocation allocation : {Allocation::sharded, Allocation::global}) {
-        Lists<Item> lists(device(), {4, 3},
-                          {.storage = storage, .capacity_nodes = 150, .allocation = allocation});
-        const Oracle<Item> oracle = oracle_of(inserts, 12);
-        const BuildReport report = Inserter(lists).build(lists, inserts);
-        require_complete(report, oracle.size(), 200 - oracle.size());
-        REQUIRE(report.passes == 2);
-        lists.sort(&Item::key);
-        require_sound(lists, oracle.size());
-        require_same(lists.download(), oracle);
-    }
+    Lists<Item> lists(device(), {4, 3}, {.storage = storage, .capacity_nodes = 150});
+    const Oracle<Item> oracle = oracle_of(inserts, 12);
+    const BuildReport report = Inserter(lists).build(lists, inserts);
+    require_complete(report, oracle.size(), 200 - oracle.size());
+    REQUIRE(report.passes == 2);
+    lists.sort(&Item::key);
+    require_sound(lists, oracle.size());
+    require_same(lists.download(), oracle);
 }
 
 TEST_CASE("a small pool of several shards overflows", "[oclgrind]") {

@@ -18,11 +18,9 @@ void require_sub_multiset(const HostLists<Item>& found, const Inserts<Item>& ins
         }
 }
 
-void drop(std::uint64_t capacity, std::size_t demand, Allocation allocation, std::mt19937& random) {
+void drop(std::uint64_t capacity, std::size_t demand, std::mt19937& random) {
     INFO("capacity " << capacity << ", demand " << demand);
-    Lists<Item> lists(
-        device(), {50},
-        {.overflow = Overflow::drop, .capacity_nodes = capacity, .allocation = allocation});
+    Lists<Item> lists(device(), {50}, {.overflow = Overflow::drop, .capacity_nodes = capacity});
     Inserts<Item> inserts = random_inserts(demand, 50, random);
     inserts.add(50, {0.0f, 0});
     const BuildReport report = Inserter(lists).build(lists, inserts);
@@ -38,29 +36,24 @@ void drop(std::uint64_t capacity, std::size_t demand, Allocation allocation, std
 
 TEST_CASE("drop keeps as many records as there are nodes") {
     CELLIST_RANDOM(random, 50u);
-    for (const Allocation allocation : {Allocation::sharded, Allocation::global}) {
-        for (const std::uint64_t capacity : {0u, 1u, 143u, 144u, 145u})
-            drop(capacity, 144, allocation, random);
-        for (const std::uint64_t capacity :
-             {1u, 255u, 256u, 257u, 511u, 1023u, 1024u, 1025u, 2047u, 2048u, 2049u, 4095u, 4096u})
-            drop(capacity, 4096, allocation, random);
-    }
+    for (const std::uint64_t capacity : {0u, 1u, 143u, 144u, 145u}) drop(capacity, 144, random);
+    for (const std::uint64_t capacity :
+         {1u, 255u, 256u, 257u, 511u, 1023u, 1024u, 1025u, 2047u, 2048u, 2049u, 4095u, 4096u})
+        drop(capacity, 4096, random);
 }
 
 TEST_CASE("drop keeps as many records as there are nodes, at random capacities") {
     CELLIST_RANDOM(random, 51u);
     for (int i = 0; i < 25; ++i) {
         const std::uint64_t capacity = below(random, 70'000);
-        drop(capacity, capacity + below(random, 5) - std::min<std::uint64_t>(capacity, 2),
-             Allocation::sharded, random);
+        drop(capacity, capacity + below(random, 5) - std::min<std::uint64_t>(capacity, 2), random);
     }
 }
 
 TEST_CASE("a tiny pool survives a huge demand") {
     CELLIST_RANDOM(random, 52u);
-    drop(3, 1'000'000, Allocation::sharded, random);
-    drop(1500, 1'000'000, Allocation::sharded, random);
-    drop(3, 1'000'000, Allocation::global, random);
+    drop(3, 1'000'000, random);
+    drop(1500, 1'000'000, random);
 }
 
 constexpr auto one_group_source = R"(
@@ -79,24 +72,21 @@ kernel void one_group(CELLIST_LISTS(Item, lists), uint count)
 TEST_CASE("one work-group fills every node of the pool before a record is refused") {
     const Lists<Item> any(device(), {1});
     Kernel kernel(device(), one_group_source, "one_group", any);
-    for (const Allocation allocation : {Allocation::sharded, Allocation::global})
-        for (const cl_uint capacity : {1u, 63u, 255u, 256u, 257u, 1023u, 1024u, 1025u, 2047u, 2048u,
-                                       3333u, 65'535u, 65'536u, 262'143u, 262'144u, 300'001u}) {
-            INFO("capacity " << capacity);
-            Lists<Item> lists(
-                device(), {50},
-                {.overflow = Overflow::drop, .capacity_nodes = capacity, .allocation = allocation});
-            Range range(64);
-            range.local = {64, 1, 1};
-            BuildReport report = lists.build(kernel, range, capacity);
-            require_complete(report, capacity);
-            require_sound(lists, capacity);
+    for (const cl_uint capacity : {1u, 63u, 255u, 256u, 257u, 1023u, 1024u, 1025u, 2047u, 2048u,
+                                   3333u, 65'535u, 65'536u, 262'143u, 262'144u, 300'001u}) {
+        INFO("capacity " << capacity);
+        Lists<Item> lists(device(), {50}, {.overflow = Overflow::drop, .capacity_nodes = capacity});
+        Range range(64);
+        range.local = {64, 1, 1};
+        BuildReport report = lists.build(kernel, range, capacity);
+        require_complete(report, capacity);
+        require_sound(lists, capacity);
 
-            report = lists.build(kernel, range, capacity + 77);
-            REQUIRE(report.stored == capacity);
-            REQUIRE(report.dropped == 77);
-            require_sound(lists, capacity);
-        }
+        report = lists.build(kernel, range, capacity + 77);
+        REQUIRE(report.stored == capacity);
+        REQUIRE(report.dropped == 77);
+        require_sound(lists, capacity);
+    }
 }
 
 }  // namespace

@@ -68,25 +68,23 @@ TEST_CASE("builds in one pass hold the records of every size, pattern and number
 constexpr auto several_source = R"(
 #include <cellist/lists.clh>
 
-// Every work-item inserts `each` records, in divergent control flow, by each of the ways to insert.
+// Every work-item inserts `each` records, in divergent control flow.
 kernel void several(CELLIST_LISTS(Item, lists), uint each)
 {
-    local cellist_group group;
     const uint i = get_global_id(0), n = get_global_size(0), cells = cellist_cells(lists);
-    cellist_reservation nodes = cellist_reserve(lists, each);
     for (uint j = 0; j < each; ++j) {
         const Item item = { (float)j, j * n + i };
         const uint cell = (i * 31 + j * 7) % cells;
-        if (j % 2) cellist_link(lists, cell, nodes, item);
+        if (j % 2) cellist_insert(lists, cell, item);
         else if (i % 3) cellist_insert(lists, cell, item);
         else cellist_insert(lists, cells - 1 - cell, item);
     }
     const Item last = { -1.0f, each * n + i };
-    cellist_insert_all(lists, group, i % 5 != 0, i % cells, last);
+    if (i % 5 != 0) cellist_insert(lists, i % cells, last);
 }
 )";
 
-TEST_CASE("every way to insert, and several kernels, share the partitions of a build") {
+TEST_CASE("several inserts and several kernels share the partitions of a build") {
     constexpr cl_uint items = 4096;
     constexpr cl_uint cells = 700;
     Lists<Item> lists(device(), {cells}, {.storage = Storage::counted});
@@ -143,8 +141,10 @@ TEST_CASE("kernels that know no threads count and fill") {
     const Buffer<cl_uint> cells(device(), inserts.cells);
     const Buffer<Item> records(device(), inserts.records);
     Lists<Item> lists(device(), {300}, {.storage = Storage::counted});
-    Kernel kernel(device(), Source{.text = insert_source("Item"), .options = "-DCELLIST_THREADS=0"},
-                  "insert_all", lists);
+    Kernel kernel(
+        device(),
+        Source{.text = insert_source("Item"), .options = "-DCELLIST_ONE_THREAD_PER_WORK_GROUP=0"},
+        "insert_all", lists);
     for (int build = 0; build < 4; ++build) {
         const BuildReport report =
             lists.build(kernel, inserts.size(), cells, records, cl_uint{50'000});

@@ -2,6 +2,7 @@
 // local memory.
 #include "device_state.hpp"
 #include "support/inserts.hpp"
+#include "support/internals.hpp"
 #include "support/sorted.hpp"
 #include "support/storages.hpp"
 
@@ -23,7 +24,7 @@ TEST_CASE("small work-groups sort, pack and validate") {
     if (storage == Storage::fixed) options.slots = 10;
     if (storage == Storage::fixed) inserts = random_inserts(3000, 5000, random);
     Lists<Item> lists(small, {5000}, options);
-    lists.core().sort_as_on(CL_DEVICE_TYPE_GPU);
+    sort_as_on(lists, CL_DEVICE_TYPE_GPU);
     const Oracle<Item> oracle = oracle_of(inserts, 5000);
     require_complete(Inserter(lists, small).build(lists, inserts), oracle.size());
     lists.sort(&Item::key);

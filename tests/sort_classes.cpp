@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "support/errors.hpp"
+#include "support/internals.hpp"
 #include "support/sorted.hpp"
 #include "support/storages.hpp"
 
@@ -33,7 +34,7 @@ Inserts<Item> inserts_of(const std::vector<cl_uint>& lengths, std::mt19937& rand
     const cl_device_type division =                                                                \
         GENERATE(cl_device_type{CL_DEVICE_TYPE_CPU}, cl_device_type{CL_DEVICE_TYPE_GPU});          \
     INFO("work is divided as on a " << (division == CL_DEVICE_TYPE_CPU ? "CPU" : "GPU"));          \
-    (lists).core().sort_as_on(division)
+    sort_as_on(lists, division)
 
 /// Requires that the first `count` records of each cell are sorted, and the others are all there.
 void require_front(const HostLists<Item>& found, const Oracle<Item>& oracle, std::size_t count) {

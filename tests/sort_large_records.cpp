@@ -1,5 +1,6 @@
 // Records of any size are sorted, packed and found, without private memory for more than a few of them.
 #include "support/inserts.hpp"
+#include "support/internals.hpp"
 #include "support/storages.hpp"
 
 namespace cellist::test {
@@ -75,7 +76,7 @@ void sort_in_every_way(std::size_t count, cl_device_type division, Storage stora
     const std::vector<T> all = records<T>(count);
     const Buffer<T> input(device(), all);
     Lists<T> lists(device(), {3}, {.storage = storage});
-    lists.core().sort_as_on(division);
+    sort_as_on(lists, division);
     Kernel insert(device(), source<T>(), "insert", lists);
     Range range = Range::padded(count, 2);
     range.local = {2, 1, 1};

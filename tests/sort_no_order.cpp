@@ -1,6 +1,7 @@
 // A sort by an expression whose value changes from call to call loses no record, and neither does any class
 // of lists.
 #include "support/inserts.hpp"
+#include "support/internals.hpp"
 #include "support/storages.hpp"
 
 namespace cellist::test {
@@ -22,7 +23,7 @@ TEST_CASE("a sort by what is no order loses no record", "[oclgrind]") {
     inserts.shuffle(random);
     const Oracle<Item> oracle = oracle_of(inserts, 13);
     Lists<Item> lists(device(), {13}, {.storage = storage});
-    lists.core().sort_as_on(division);
+    sort_as_on(lists, division);
     Inserter(lists).build(lists, inserts);
     for (const bool descending : {false, true}) {
         const Order order = descending ? Order::descending : Order::ascending;

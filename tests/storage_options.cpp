@@ -78,39 +78,9 @@ const std::vector<Together> together{
     {"capacity and stop, fixed",
      {.storage = Storage::fixed, .overflow = Overflow::stop, .capacity_nodes = 140, .slots = 13},
      0},
-    {"capacity and keep_nearest",
-     {.storage = Storage::fixed,
-      .overflow = Overflow::keep_nearest,
-      .capacity_nodes = 5,
-      .slots = 3,
-      .nearest_by = "key"},
+    {"nearest, stop and capacity",
+     {.storage = nearest(&Item::key, 3), .overflow = Overflow::stop, .capacity_nodes = 5},
      30},
-    {"reserved and keep_nearest",
-     {.storage = Storage::fixed,
-      .overflow = Overflow::keep_nearest,
-      .slots = 14,
-      .nearest_by = "id",
-      .allocation = Allocation::reserved},
-     140},
-    {"global, counted", {.storage = Storage::counted, .allocation = Allocation::global}, 140},
-    {"global, fixed", {.storage = Storage::fixed, .allocation = Allocation::global}, 140},
-    {"reserved, counted", {.storage = Storage::counted, .allocation = Allocation::reserved}, 140},
-    {"reserved, fixed", {.storage = Storage::fixed, .allocation = Allocation::reserved}, 140},
-    {"reserved and drop, counted",
-     {.storage = Storage::counted,
-      .overflow = Overflow::drop,
-      .capacity_nodes = 100,
-      .allocation = Allocation::reserved},
-     100},
-    {"reserved and drop, fixed",
-     {.storage = Storage::fixed,
-      .overflow = Overflow::drop,
-      .slots = 3,
-      .allocation = Allocation::reserved},
-     30},
-    {"reserved, automatic",
-     {.storage = Storage::automatic, .allocation = Allocation::reserved},
-     140},
     {"slots, automatic", {.storage = Storage::automatic, .slots = 1}, 140},
     {"slots and drop, automatic",
      {.storage = Storage::automatic, .overflow = Overflow::drop, .capacity_nodes = 100, .slots = 3},
@@ -175,12 +145,6 @@ TEST_CASE("options that contradict each other are refused, and what is missing i
     };
     for (const Storage storage : {Storage::linked, Storage::counted, Storage::automatic}) {
         INFO("storage " << name_of(storage));
-        refuse({.storage = storage,
-                .overflow = Overflow::keep_nearest,
-                .capacity_nodes = 100,
-                .slots = 4,
-                .nearest_by = "key"},
-               "Overflow::keep_nearest needs Storage::fixed");
         for (const Overflow overflow : {Overflow::stop, Overflow::drop})
             refuse({.storage = storage, .overflow = overflow, .slots = 4},
                    "an Overflow other than grow needs capacity_nodes");
@@ -188,22 +152,6 @@ TEST_CASE("options that contradict each other are refused, and what is missing i
     for (const Overflow overflow : {Overflow::stop, Overflow::drop})
         refuse({.storage = Storage::fixed, .overflow = overflow, .capacity_nodes = 100},
                "an Overflow other than grow needs slots in Storage::fixed");
-    refuse({.storage = Storage::fixed,
-            .overflow = Overflow::keep_nearest,
-            .capacity_nodes = 100,
-            .nearest_by = "key"},
-           "an Overflow other than grow needs slots in Storage::fixed");
-    for (const Storage storage :
-         {Storage::linked, Storage::counted, Storage::fixed, Storage::automatic})
-        for (const Overflow overflow : {Overflow::grow, Overflow::stop, Overflow::drop}) {
-            INFO("storage " << name_of(storage));
-            refuse({.storage = storage,
-                    .overflow = overflow,
-                    .capacity_nodes = 100,
-                    .slots = 4,
-                    .nearest_by = "key"},
-                   "nearest_by needs Overflow::keep_nearest");
-        }
 }
 
 TEST_CASE("heads over the budget are refused in every storage") {

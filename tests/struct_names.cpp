@@ -72,19 +72,13 @@ TEST_CASE("members with the names of the library's variables work everywhere") {
 
 TEST_CASE("the nearest are kept by members with the names of the library's variables") {
     const Inserts<Names> inserts = names(20);
-    for (const std::string by : {"word", "words"}) {
-        INFO(by);
-        Lists<Names> lists(device(), {1},
-                           {.storage = Storage::fixed,
-                            .overflow = Overflow::keep_nearest,
-                            .slots = 3,
-                            .nearest_by = by});
+    for (const auto by : {&Names::word, &Names::words}) {
+        Lists<Names> lists(device(), {1}, {.storage = nearest(by, 3)});
         Inserter(lists).build(lists, inserts);
-        lists.sort(by == "word" ? &Names::word : &Names::words);
+        lists.sort(by);
         const HostLists<Names> kept = lists.download();
         REQUIRE(kept.records().size() == 3);
-        for (cl_uint i = 0; i < 3; ++i)
-            REQUIRE((by == "word" ? kept.records()[i].word : kept.records()[i].words) == i);
+        for (cl_uint i = 0; i < 3; ++i) REQUIRE(kept.records()[i].*by == i);
     }
 }
 

@@ -1,4 +1,4 @@
-// Overflow::keep_nearest runs a kernel to rank and to fill. One that inserts other records the second time
+// nearest() runs a kernel to rank and to fill. One that inserts other records the second time
 // ends in an error, unless it cannot be told, and leaves the container usable.
 #include "support/errors.hpp"
 #include "support/inserts.hpp"
@@ -32,11 +32,7 @@ kernel void vary(CELLIST_LISTS(Item, lists), uint way, volatile global uint* run
 TEST_CASE("a kernel that does not repeat itself while the nearest are kept ends in an error") {
     Buffer<cl_uint> runs(device(), 1);
     for (const cl_uint slots : {1u, 4u, 200u}) {
-        Lists<Item> lists(device(), {10},
-                          {.storage = Storage::fixed,
-                           .overflow = Overflow::keep_nearest,
-                           .slots = slots,
-                           .nearest_by = "key"});
+        Lists<Item> lists(device(), {10}, {.storage = nearest(&Item::key, slots)});
         Kernel vary(device(), source, "vary", lists);
         const auto build = [&](cl_uint way) {
             runs.fill(0);

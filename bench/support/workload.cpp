@@ -49,20 +49,8 @@ const std::vector<Keeping>& automatic_storages() {
 
 const std::vector<Keeping>& allocations() {
     static const std::vector<Keeping> all{
-        {"linked", "sharded", {.allocation = cellist::Allocation::sharded}},
-        // As in the papers: one counter, and every work-item alone.
-        {"linked",
-         "global",
-         {.allocation = cellist::Allocation::global},
-         "insert",
-         1,
-         " -DCELLIST_LANES=0"},
-        {"linked", "work_group", {}, "insert_all"},
-        {"linked",
-         "reserved_4",
-         {.allocation = cellist::Allocation::reserved},
-         "insert_reserved",
-         4},
+        {"linked", "sharded", {}},
+        {"linked", "global", {}, "insert_with_one_counter"},
     };
     return all;
 }

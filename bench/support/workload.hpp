@@ -52,9 +52,7 @@ struct Keeping {
     std::string storage;     ///< as benchmarks are named
     std::string allocation;  ///< the same; empty for what the options take by default
     cellist::ListsOptions options;
-    std::string kernel = "insert";   ///< in insert.cl
-    cl_uint inserts = 1;             ///< of each of its work-items
-    const char* build_options = "";  ///< of the kernel
+    std::string kernel = "insert";  ///< in insert.cl
 
     [[nodiscard]] std::string name() const;
 };
@@ -64,7 +62,7 @@ struct Keeping {
 /// The storage that the library chooses itself, as automatic_1 and automatic_8 where it is told to expect
 /// one read or eight.
 [[nodiscard]] const std::vector<Keeping>& automatic_storages();
-/// Linked lists with each way to get nodes, by its name.
+/// Linked lists with the library's sharded counters, and with the one counter of the papers.
 [[nodiscard]] const std::vector<Keeping>& allocations();
 
 /// Whether a device of this size has room for a container of a workload, and what is measured with it.

@@ -70,11 +70,7 @@ void drop(const cellist::Device& device) {
 }
 
 void keep_nearest(const cellist::Device& device) {
-    cellist::Lists<Sample> nearest(device, {100},
-                                   {.storage = cellist::Storage::fixed,
-                                    .overflow = cellist::Overflow::keep_nearest,
-                                    .slots = 4,
-                                    .nearest_by = "value"});
+    cellist::Lists<Sample> nearest(device, {100}, {.storage = cellist::nearest(&Sample::value, 4)});
     cellist::Kernel sample(device, source, "sample", nearest);
     cellist::BuildReport report = nearest.build(sample, 50'000, cl_uint{100});
     check(report.stored == 400 && report.dropped == 49'600, "four of each cell");

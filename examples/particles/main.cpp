@@ -103,7 +103,7 @@ bool run(const Options& options) {
     std::printf("points      %zu, %s box, %llu rejected\n", options.points,
                 options.box == particles::Box::open ? "open" : "periodic",
                 static_cast<unsigned long long>(report.rejected));
-    std::printf("lists       %s, %s cells, %.1f MB\n", support::to_string(options.storage).c_str(),
+    std::printf("lists       %s, %s cells, %.1f MB\n", name_of(options.storage),
                 search.lists().shape().to_string().c_str(),
                 static_cast<double>(search.lists().pool_bytes()) * 1e-6);
     std::printf(

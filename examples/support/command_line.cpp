@@ -73,22 +73,8 @@ std::uint64_t read_number(const std::string& option, const std::string& text, st
 cellist::Storage read_storage(const std::string& option, const std::string& text) {
     for (const auto storage :
          {cellist::Storage::linked, cellist::Storage::counted, cellist::Storage::fixed})
-        if (text == to_string(storage)) return storage;
+        if (text == name_of(storage)) return storage;
     refuse(option, text, "linked, counted or fixed");
-}
-
-std::string to_string(cellist::Storage storage) {
-    switch (storage) {
-        case cellist::Storage::linked:
-            return "linked";
-        case cellist::Storage::counted:
-            return "counted";
-        case cellist::Storage::fixed:
-            return "fixed";
-        case cellist::Storage::automatic:
-            return "automatic";
-    }
-    return "unknown";
 }
 
 void print_error(const std::string& name, const std::string& message) {

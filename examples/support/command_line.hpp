@@ -29,7 +29,6 @@ namespace support {
 
 /// "linked", "counted" or "fixed". Throws InputError at anything else.
 [[nodiscard]] cellist::Storage read_storage(const std::string& option, const std::string& text);
-[[nodiscard]] std::string to_string(cellist::Storage storage);
 
 /// Throws InputError: the option has none of the values it could have, such as "open or periodic".
 [[noreturn]] void refuse(const std::string& option, const std::string& text,

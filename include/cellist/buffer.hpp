@@ -16,17 +16,18 @@
 namespace cellist {
 
 /// `size()` elements of T in device memory. T has the layout that the kernels expect. Movable, not
-/// copyable; every use of a moved-from buffer throws Error.
+/// copyable; every use of a moved-from buffer throws Error. Every function that uses the device
+/// throws OpenClError if an OpenCL call fails.
 template <class T>
 class Buffer {
     static_assert(std::is_trivially_copyable_v<T>, "a Buffer holds trivially copyable elements");
 
 public:
-    /// Room for `size` elements, uninitialised. Throws Error if that is more than the device can
-    /// allocate at once.
+    /// Room for `size` elements, uninitialised. Throws MemoryError if that is more than the device
+    /// can allocate at once.
     Buffer(const Device& device, std::size_t size) : Buffer(device.state(), size) {}
 
-    /// A copy of `elements`. Blocks until they are copied.
+    /// A copy of `elements`. Throws the same. Blocks until they are copied.
     Buffer(const Device& device, std::span<const T> elements) : Buffer(device, elements.size()) {
         memory_.write(elements.data(), elements.size_bytes());
     }
@@ -36,7 +37,8 @@ public:
     [[nodiscard]] std::size_t size() const { return memory().size_bytes() / sizeof(T); }
     [[nodiscard]] const cl::Buffer& cl() const { return memory().cl(); }
 
-    /// A copy of the elements, after everything that was enqueued before. Blocks.
+    /// A copy of the elements, after everything that was enqueued before. Throws MemoryError if the
+    /// host has no memory for it. Blocks.
     [[nodiscard]] std::vector<T> download() const {
         std::vector<T> elements = detail::host_memory<T>(size());
         memory_.read(elements.data(), elements.size() * sizeof(T));

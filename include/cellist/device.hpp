@@ -30,31 +30,33 @@ struct DeviceInfo {
     bool int64_atomics = false;
     bool sub_groups = false;
     bool fp64 = false;
-    bool lanes = false;  ///< warps whose lanes can exchange values: NVIDIA, compute capability 7.0
-    bool threads =
-        false;  ///< a work-group runs on one thread: PoCL on x86-64 and AArch64 processors
+    /// The work-items of a warp can exchange values: NVIDIA, compute capability 7.0 or later.
+    bool warp_aggregation = false;
+    /// A work-group runs on one thread: PoCL on x86-64 and AArch64 processors.
+    bool one_thread_per_work_group = false;
 };
 
 /// An OpenCL device with a context, a queue and a cache of built programs. Everything that is made
 /// from a Device shares them, and stays valid after the Device object is gone. Movable, not
-/// copyable; every use of a moved-from Device throws Error. Several threads may use one Device and objects
-/// made from it, each object from one thread at a time.
+/// copyable; every use of a moved-from Device throws Error. Every function that calls OpenCL throws
+/// OpenClError if the call fails. Several threads may use one Device and objects made from it, each
+/// object from one thread at a time.
 class Device {
 public:
     /// The device that the environment variable CELLIST_DEVICE names, as in choose(selector); if it
-    /// is not set or empty, the first GPU, else the first device. Throws Error if there is none. Its
-    /// queue is in order and does not profile, which would double the time of small builds.
+    /// is not set or empty, the first GPU, else the first device. Throws Error if there is none.
+    /// Its queue is in order and does not profile, which would double the time of small builds.
     [[nodiscard]] static Device choose();
 
     /// The device with this index in all(), or the first whose name or platform contains the
     /// selector, without regard to case. Throws Error, listing the devices, if there is none.
     [[nodiscard]] static Device choose(std::string_view selector);
 
-    /// Works on the caller's own context and queue. Several Devices may share a context: where a kernel of
-    /// one uses Lists or Buffers of another, it runs in order with the commands of the other's queue. In an
-    /// out-of-order queue, every command of the library starts after all that were enqueued before it,
-    /// including the caller's. Events have times where
-    /// the queue was made with CL_QUEUE_PROFILING_ENABLE.
+    /// Works on the caller's own context and queue. Several Devices may share a context: where a
+    /// kernel of one uses Lists or Buffers of another, it runs in order with the commands of the
+    /// other's queue. In an out-of-order queue, every command of the library starts after all that
+    /// were enqueued before it, including the caller's. Events have times where the queue was made
+    /// with CL_QUEUE_PROFILING_ENABLE. Throws Error if the queue belongs to another context.
     Device(cl::Context context, cl::CommandQueue queue);
 
     Device(Device&&) noexcept;
@@ -63,8 +65,8 @@ public:
     Device& operator=(const Device&) = delete;
     ~Device();
 
-    /// All devices of all platforms, in the order that choose() counts them in. Empty if there is no
-    /// platform.
+    /// All devices of all platforms, in the order that choose() counts them in. Empty if there is
+    /// no platform.
     [[nodiscard]] static std::vector<DeviceInfo> all();
 
     [[nodiscard]] const DeviceInfo& info() const;

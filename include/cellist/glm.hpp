@@ -2,8 +2,8 @@
 // GLM's vectors and matrices as members of adapted structs.
 //
 // GLM packs its types: vec3 takes 12 bytes and every type is aligned as its scalar. The kernel sees
-// structs of the same layout, which cellist/glm.clh defines: glm::vec3 is a cellist_vec3 with members
-// x, y, z, and cellist_float3(v) makes a float3 of it; glm::mat4 is a cellist_mat4 of four
+// structs of the same layout, which cellist/glm.clh defines: glm::vec3 is a cellist_vec3 with
+// members x, y, z, and cellist_float3(v) makes a float3 of it; glm::mat4 is a cellist_mat4 of four
 // cellist_vec4 columns. Needs GLM's default, packed types: not GLM_FORCE_DEFAULT_ALIGNED_GENTYPES.
 
 #include <string>

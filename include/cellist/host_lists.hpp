@@ -20,8 +20,8 @@ public:
     HostLists(const Shape& shape, std::vector<std::uint64_t> offsets, std::vector<T> records)
         : shape_(shape), offsets_(std::move(offsets)), records_(std::move(records)) {}
 
-    /// The records of the cell at a position; missing coordinates are 0, as on the device. Throws Error
-    /// if it is outside of the shape.
+    /// The records of the cell at a position; missing coordinates are 0, as on the device. Throws
+    /// Error if it is outside of the shape.
     [[nodiscard]] std::span<const T> operator[](
         std::initializer_list<std::uint64_t> position) const& {
         return cell(shape_.cell(position));

@@ -26,8 +26,9 @@
 namespace cellist {
 
 /// The lists of all cells in device memory, one after the other: the records of cell c, or a member
-/// of each, are records[offsets[c]] ... records[offsets[c + 1] - 1]. There are offsets[cells] records.
-/// The buffer may have room for more, if the lists were packed while their build was pending.
+/// of each, are records[offsets[c]] ... records[offsets[c + 1] - 1]. There are offsets[cells]
+/// records. The buffer may have room for more, if the lists were packed while their build was
+/// pending.
 template <class T>
 struct Packed {
     Buffer<cl_uint> offsets;  ///< cells + 1
@@ -51,21 +52,32 @@ struct Element<M[count]> {
 /// A list of records T for each cell of a shape, in device memory.
 ///
 /// Kernels fill the lists concurrently, with cellist_insert; see kernels/cellist/lists.clh for what
-/// they can do. The heads take 4 bytes a cell, and a node takes the record and 4 bytes, rounded up to
-/// the alignment of both.
+/// they can do. The heads take 4 bytes a cell, and a node takes the record and 4 bytes, rounded up
+/// to the alignment of both.
 ///
-/// Owned by value, movable, not copyable; every use of moved-from Lists throws Error. Work for the device
-/// is enqueued on its queue. Calls that return results block until they have them. The others do not
-/// block, with one exception: a call that uses lists with a pending build finishes that build first, and
-/// blocks, if it may still change the lists. Under Overflow::drop a pending build cannot change them,
-/// unless the storage is automatic.
+/// Owned by value, movable, not copyable; every use of moved-from Lists throws Error. Work for the
+/// device is enqueued on its queue. Calls that return results block until they have them. The
+/// others do not block, with one exception: a call that uses lists with a pending build finishes
+/// that build first, and blocks, if it may still change the lists. Under Overflow::drop a pending
+/// build cannot change them, unless the storage is automatic.
+///
+/// All functions but shape() and those that only report sizes throw:
+/// - OpenClError if an OpenCL call fails.
+/// - MemoryError if a result exceeds the memory of the host, the device's largest allocation or
+///   the budget; see out_of_memory().
+/// - what a pending build throws, if the function ends that build.
+/// - Error if the function that inserts uses the lists that it fills.
+///
+/// Where a function throws more than that, its comment says so. After an exception from a build or
+/// from clear() the lists are empty; other functions leave them as they are, unless the comment
+/// says otherwise.
 template <class T>
 class Lists {
     static_assert(detail::Adapted<T>, "adapt the record with CELLIST_STRUCT first");
 
 public:
-    /// Empty lists. Throws Error if the shape or the capacity exceeds a limit of the device or of
-    /// the budget.
+    /// Empty lists. Throws MemoryError if the shape or the capacity exceeds a limit of the device
+    /// or of the budget, and Error if the options contradict each other.
     Lists(const Device& device, const Shape& shape, const ListsOptions& options = {})
         : core_("a Lists object",
                 std::make_shared<detail::ListsCore>(device.state(), detail::definitions_of<T>(),
@@ -76,20 +88,21 @@ public:
     Lists& operator=(const Lists&) = delete;
     ~Lists() = default;
 
-    /// Fills the lists anew: clears them, then runs `kernel(lists, args...)` over `range`. The lists
-    /// are the kernel's first parameters; `args` are the rest. The old records are gone when the kernel
-    /// runs: run a kernel that reads them before the build.
+    /// Fills the lists anew: clears them, then runs `kernel(lists, args...)` over `range`. The
+    /// lists are the kernel's first parameters; `args` are the rest. The old records are gone when
+    /// the kernel runs: run a kernel that reads them before the build.
     ///
-    /// Other containers among `args` are read-only. Where the kernel inserts into one, the build throws
-    /// Error with a message that names the container.
+    /// Other containers among `args` are read-only. If the kernel inserts into one, the build
+    /// throws Error with a message that names the container. Throws Error if a kernel does not
+    /// insert the same records in a pass that needs them again.
     ///
     /// If the pool is too small, the overflow policy decides: grow enlarges it to the exact demand
     /// and runs the kernel again, which must insert the same records again; stop and a demand over
-    /// the budget or the device's limit throw OverflowError; drop keeps what fits. After an exception
-    /// the lists are empty. Blocks until the report is there.
+    /// the budget or the device's limit throw OverflowError; drop keeps what fits. After an
+    /// exception the lists are empty. Blocks until the report is there.
     template <class... Args>
     BuildReport build(Kernel& kernel, const Range& range, const Args&... args) {
-        return build([&] {
+        return core_->build([&] {
             detail::Arguments arguments;
             arguments.add(*this);
             (arguments.add(args), ...);
@@ -97,17 +110,17 @@ public:
         });
     }
 
-    /// The same for several inserting kernels: `insert` enqueues all of them with Kernel::run, and is
-    /// called again after the pool has grown. `insert` cannot build, clear, sort or read these lists:
-    /// each of these throws Error.
+    /// The same for several inserting kernels: `insert` enqueues all of them with Kernel::run, and
+    /// is called again after the pool has grown. `insert` cannot build, clear, sort or read these
+    /// lists: each of these throws Error.
     BuildReport build(std::invocable auto&& insert) { return core_->build(std::ref(insert)); }
 
-    /// Starts the same build. Blocks only for an earlier build of these lists that is still pending. The
-    /// event completes after the first pass; get() runs more passes if the pool was too small, or throws.
-    /// Until then the lists are incomplete, unless the policy is Overflow::drop: a call that uses them
-    /// finishes the build itself, blocks, and throws what get() would throw. The kernel and the memory
-    /// among the arguments must stay alive until then. The Lists object may be destroyed before: get()
-    /// still returns the report.
+    /// Starts the same build. Blocks only for an earlier build of these lists that is still
+    /// pending. The event completes after the first pass; get() runs more passes if the pool was
+    /// too small, or throws. Until then the lists are incomplete, unless the policy is
+    /// Overflow::drop: a call that uses them finishes the build itself, blocks, and throws what
+    /// get() would throw. The kernel and the memory among the arguments must stay alive until then.
+    /// The Lists object may be destroyed before: get() still returns the report.
     template <class... Args>
     [[nodiscard]] Pending<BuildReport> build_async(Kernel& kernel, const Range& range,
                                                    const Args&... args) {
@@ -130,32 +143,36 @@ public:
     /// Builds lists that are more than the pool may hold (by the budget, by the device's largest
     /// allocation, by capacity_nodes unless the policy is to grow), a range of cells at a time.
     /// `insert` enqueues the kernels as in build(): once to count, then for each slice, of which it
-    /// stores the records. `read` is called for each slice, in order, with the lists of its cells in
-    /// place and all others empty. The kernels must insert the same records every time. At the end the
-    /// lists are empty. Throws OverflowError if a single list does not fit and the policy is not to
-    /// drop. Takes 8 bytes a cell for the counts. Blocks.
+    /// stores the records. `read` is called for each slice, in order, with the lists of its cells
+    /// in place and all others empty. The kernels must insert the same records every time. At the
+    /// end the lists are empty. Throws OverflowError if a single list does not fit and the policy
+    /// is not to drop, and Error if the kernels insert other records than they counted. `read`
+    /// cannot build the lists: that throws Error. Takes 8 bytes a cell for the counts. Blocks.
     BuildReport build_slices(std::invocable auto&& insert,
                              std::invocable<const Slice&> auto&& read) {
         return core_->build_slices(std::ref(insert), std::ref(read));
     }
 
-    /// Empties the lists; the pool keeps its capacity. Blocks only for a pending build, under any policy.
+    /// Empties the lists; the pool keeps its capacity. Blocks only for a pending build, under any
+    /// policy.
     void clear() { core_->clear(); }
 
     /// Sorts every list by a scalar member: cellist_for_each then visits the least first, or the
-    /// greatest. Records with equal keys are ordered by their remaining members, ascending, in order
-    /// of declaration, so the result depends on the records alone and not on the order of insertion.
-    /// Floats are ordered -inf < ... < -0 < +0 < ... < +inf < NaN. Lists have any length.
+    /// greatest. Records with equal keys are ordered by their remaining members, ascending, in
+    /// order of declaration, so the result depends on the records alone and not on the order of
+    /// insertion. Floats are ordered -inf < ... < -0 < +0 < ... < +inf < NaN. Lists have any
+    /// length.
     ///
-    /// Linked lists move to a second pool, each in one piece; it is counted in pool_bytes() and kept for
-    /// the next sort. Lists of some hundred nodes or more need a second pool in the other storages as
-    /// well. Where the budget or the device has no memory for it, lists are sorted as by sort_async().
+    /// Linked lists move to a second pool, each in one piece; it is counted in pool_bytes() and
+    /// kept for the next sort. Lists of some hundred nodes or more need a second pool in the other
+    /// storages as well. Where the budget or the device has no memory for it, lists are sorted as
+    /// by sort_async().
     ///
-    /// Blocks until it is known how long the lists are. The first calls for a member compile kernels.
-    /// Throws Error where links lead in circles, out of the pool, or from several lists to the same nodes,
-    /// where offsets descend or leave the pool, or where the lists do not have as many nodes as the last
-    /// build stored. A sort without memory for more buffers checks nothing; validate() checks more.
-    /// Whatever fails, sound lists keep their records.
+    /// Blocks until it is known how long the lists are. The first calls for a member compile
+    /// kernels. Throws Error where links lead in circles, out of the pool, or from several lists to
+    /// the same nodes, where offsets descend or leave the pool, or where the lists do not have as
+    /// many nodes as the last build stored. A sort without memory for more buffers checks nothing;
+    /// validate() checks more. Whatever fails, sound lists keep their records.
     template <class M>
     cl::Event sort(M T::*member, Order order = Order::ascending) {
         return core_->sort(key_of(member, order), all_nodes);
@@ -163,20 +180,20 @@ public:
 
     /// The same by an OpenCL C expression of `record`, of integer or float type, such as
     /// "record.depth * record.depth". Throws OpenClError with the compiler's log if it does not
-    /// compile, and Error if it is more than one expression, or writes: commas outside of parentheses,
-    /// quoted text, directives, assignments, pointers and calls that write are refused. No record is lost
-    /// where its value differs from call to call, as after a division by 0 or with get_global_id(). The
-    /// lists are then in no particular order.
+    /// compile, and Error if it is more than one expression, or writes: commas outside of
+    /// parentheses, quoted text, directives, assignments, pointers and calls that write are
+    /// refused. No record is lost where its value differs from call to call, as after a division by
+    /// 0 or with get_global_id(). The lists are then in no particular order.
     ///
-    /// The expression is your code, and runs inside the library's kernel. Undefined operations are your
-    /// risk: an index outside an array can end the process on a CPU.
+    /// The expression is your code, and runs inside the library's kernel. Undefined operations are
+    /// your risk: an index outside an array can end the process on a CPU.
     cl::Event sort_by(const std::string& expression, Order order = Order::ascending) {
         return core_->sort({expression, 64, order}, all_nodes);
     }
 
-    /// Sorts the first `count` nodes of every list only: those that sort() would put there. The others
-    /// follow in any order. Takes less time than sort() where lists are several times as long; is the
-    /// same otherwise.
+    /// Sorts the first `count` nodes of every list only: those that sort() would put there. The
+    /// others follow in any order. Takes less time than sort() where lists are several times as
+    /// long; is the same otherwise.
     template <class M>
     cl::Event partial_sort(M T::*member, std::uint32_t count, Order order = Order::ascending) {
         return core_->sort(key_of(member, order), count);
@@ -186,9 +203,9 @@ public:
         return core_->sort({expression, 64, order}, count);
     }
 
-    /// Sorts without blocking, and without a second pool: each list in its place, by one work-item, which
-    /// takes longer for most lists. For sound lists only: where links lead in circles, it ends, and the
-    /// lists may be anything.
+    /// Sorts without blocking, and without a second pool: each list in its place, by one work-item,
+    /// which takes longer for most lists. Throws what sort_by() throws for an expression. For sound
+    /// lists only: where links lead in circles, it ends, and the lists may be anything.
     template <class M>
     cl::Event sort_async(M T::*member, Order order = Order::ascending) {
         return core_->sort_async(key_of(member, order));
@@ -215,9 +232,9 @@ public:
 
     /// A copy of all lists in host memory. Blocks.
     [[nodiscard]] HostLists<T> download() const { return download_async().get(); }
-    /// The same. Does not block if the records take up to 256 MiB and fit into one allocation of the
-    /// device. While a build under Overflow::drop is pending, the number of records is not known: the call
-    /// copies the whole pool, and these limits are for the pool.
+    /// The same. Does not block if the records take up to 256 MiB and fit into one allocation of
+    /// the device. While a build under Overflow::drop is pending, the number of records is not
+    /// known: the call copies the whole pool, and these limits are for the pool.
     [[nodiscard]] Pending<HostLists<T>> download_async() const {
         struct State {
             std::vector<cl_uint> offsets;
@@ -241,8 +258,9 @@ public:
     /// container. Blocks only for a pending build that may still change the lists. While a build
     /// under Overflow::drop is pending, the copy has room for capacity_nodes() records.
     [[nodiscard]] Packed<T> pack() const { return pack<T, T>(""); }
-    /// The same for a single member, for readers that need only that member. Its type may be a scalar, a
-    /// vector, an adapted struct or an array; `cl_float[4]` gives `Packed<std::array<cl_float, 4>>`.
+    /// The same for a single member, for readers that need only that member. Its type may be a
+    /// scalar, a vector, an adapted struct or an array; `cl_float[4]` gives
+    /// `Packed<std::array<cl_float, 4>>`.
     template <class M>
     [[nodiscard]] Packed<typename detail::Element<M>::type> pack(M T::*member) const {
         return pack<M, typename detail::Element<M>::type>(std::string(".") +
@@ -250,11 +268,11 @@ public:
     }
 
     /// Checks that every allocated node is reached from exactly one head, exactly once. Finds any
-    /// corruption of heads and links in time proportional to cells + nodes. Compares sums with those of the
-    /// last build, and counts inserts outside a build. Storage::counted compares the offsets with the
-    /// counts of the last build; Storage::fixed compares the counts with a hash of those counts. So both
-    /// find a word that has changed. Takes one bit of device memory a node in Storage::linked, and 4 bytes
-    /// a cell in Storage::counted. Blocks.
+    /// corruption of heads and links in time proportional to cells + nodes. Compares sums with
+    /// those of the last build, and counts inserts outside a build. Storage::counted compares the
+    /// offsets with the counts of the last build; Storage::fixed compares the counts with a hash of
+    /// those counts. So both find a word that has changed. Takes one bit of device memory a node in
+    /// Storage::linked, and 4 bytes a cell in Storage::counted. Blocks.
     [[nodiscard]] Validation validate() const { return core_->validate()(); }
     /// The same without blocking.
     [[nodiscard]] Pending<Validation> validate_async() const {
@@ -265,13 +283,14 @@ public:
     [[nodiscard]] const Shape& shape() const { return core_->shape(); }
     /// Nodes in the pool.
     [[nodiscard]] std::uint64_t capacity_nodes() const { return core_->capacity_nodes(); }
-    /// Device memory of every buffer that the container keeps: heads, nodes, counters, and the buffers that
-    /// sorts, downloads and builds keep for reuse. budget_bytes bounds it, except for sums over the cells:
-    /// 20 bytes for each 4,096 cells, and some hundred bytes.
+    /// Device memory of every buffer that the container keeps: heads, nodes, counters, and the
+    /// buffers that sorts, downloads and builds keep for reuse. budget_bytes bounds it, except for
+    /// sums over the cells: 20 bytes for each 4,096 cells, and some hundred bytes.
     [[nodiscard]] std::uint64_t pool_bytes() const { return core_->pool_bytes(); }
     /// The storage in use: in Storage::automatic the one of the last build.
     [[nodiscard]] Storage storage() const { return core_->storage_in_use(); }
-    /// A sentence for people: which storage the next build takes, and the measurements that speak for it.
+    /// A sentence for people: which storage the next build takes, and the measurements that speak
+    /// for it.
     [[nodiscard]] std::string storage_reason() const { return core_->storage_reason(); }
 
     /// @private
@@ -321,9 +340,12 @@ std::array<BuildReport, count> reports(Build& build) {
 
 }  // namespace detail
 
-/// Fills several containers at once: `insert` enqueues the kernels that fill them with Kernel::run, and
-/// is called again when one of the pools has grown. A report for each container, in order. After an
-/// exception all of them are empty. Blocks.
+/// Fills several containers at once: `insert` enqueues the kernels that fill them with Kernel::run,
+/// and is called again when one of the pools has grown. A report for each container, in order.
+/// After an exception all of them are empty. Blocks.
+///
+/// The containers belong to Devices of one device and context: build() throws Error for others, and
+/// for a container that is named twice. It throws what Lists::build throws.
 ///
 ///     auto [near, far] = cellist::build([&] { sort_out.run(n, near_lists, far_lists, points); },
 ///                                       near_lists, far_lists);
@@ -334,8 +356,8 @@ std::array<BuildReport, sizeof...(T)> build(std::invocable auto&& insert, Lists<
         *detail::ListsCore::start_build({&lists.core()...}, std::ref(insert)));
 }
 
-/// Starts the same and does not block; see Lists::build_async. If one of the containers is destroyed before
-/// get(), the others are empty and get() throws Error.
+/// Starts the same and does not block; see Lists::build_async. If one of the containers is
+/// destroyed before get(), the others are empty and get() throws Error.
 template <class... T>
     requires(sizeof...(T) > 0)
 [[nodiscard]] Pending<std::array<BuildReport, sizeof...(T)>> build_async(

@@ -8,8 +8,8 @@
 
 namespace cellist {
 
-/// A result of type T that the device is working on. The Lists or Buffer object that returned it may be
-/// destroyed before get(). Movable, not copyable.
+/// A result of type T that the device is working on. The Lists or Buffer object that returned it
+/// may be destroyed before get(). Movable, not copyable.
 template <class T>
 class Pending {
 public:
@@ -27,7 +27,7 @@ public:
     /// Completes when the device has done what was enqueued.
     [[nodiscard]] const cl::Event& event() const { return event_; }
 
-    /// Whether get() would find the device done. Does not block.
+    /// Whether get() would find the device done. Throws OpenClError. Does not block.
     [[nodiscard]] bool ready() const {
         if (event_() == nullptr) return true;
         cl_int status = CL_QUEUED;

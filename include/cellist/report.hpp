@@ -19,7 +19,8 @@ struct BuildReport {
                                        ///< more after growing
 };
 
-/// The cells that have lists while a build in slices reads them: first_cell ... first_cell + cells - 1.
+/// The cells that have lists while a build in slices reads them: `cells` of them from first_cell
+/// on.
 struct Slice {
     std::uint64_t first_cell;
     std::uint64_t cells;
@@ -47,7 +48,8 @@ struct Validation {
     /// Lowest cell that shows one of these. None where all is well, or where only sums differ.
     std::optional<std::uint64_t> first_bad_cell;
 
-    /// True if every stored node is in exactly one list, exactly once, and every insert was in a build.
+    /// True if every stored node is in exactly one list, exactly once, and every insert was in a
+    /// build.
     [[nodiscard]] bool ok() const {
         return broken_links == 0 && repeated_nodes == 0 && lost_nodes == 0 && late_inserts == 0;
     }

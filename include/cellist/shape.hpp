@@ -17,8 +17,8 @@ public:
     /// Largest number of cells.
     static constexpr std::uint64_t cells_max = 0xFFFF'FFFE;
 
-    /// Throws Error unless there are 1 to 4 extents, each at most `extent_max`, with a product of at
-    /// most `cells_max`.
+    /// Throws Error unless there are 1 to 4 extents, each at most `extent_max`, with a product of
+    /// at most `cells_max`.
     Shape(std::initializer_list<std::uint64_t> extents);
 
     [[nodiscard]] std::size_t dimensions() const { return dimensions_; }

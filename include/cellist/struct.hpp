@@ -17,12 +17,13 @@
 ///     CELLIST_STRUCT(Hit, depth, id);
 ///
 /// Stands in the namespace of the struct, and names every member in order of declaration. Members
-/// are scalars (`cl_float`, `cl_uint`, ... and the C++ types of the same size, enums included), `cl_`
-/// vectors, arrays, and structs that are adapted themselves; `<cellist/glm.hpp>` adds GLM's types.
-/// Note that `cl_float3` is `cl_float4` on the host, so a kernel sees a float4.
+/// are scalars (`cl_float`, `cl_uint`, ... and the C++ types of the same size, enums included),
+/// `cl_` vectors, arrays, and structs that are adapted themselves; `<cellist/glm.hpp>` adds GLM's
+/// types. Note that `cl_float3` is `cl_float4` on the host, so a kernel sees a float4.
 ///
 /// The struct must be trivially copyable and of standard layout. The offsets are compared with
-/// OpenCL C's rules when the host program is compiled, and with the device compiler's in each build.
+/// OpenCL C's rules when the host program is compiled, and with the device compiler's in each
+/// build.
 #define CELLIST_STRUCT(type, ...)                                                                  \
     constexpr auto cellist_describe(const type*) {                                                 \
         return ::cellist::detail::describe<type>(                                                  \
@@ -39,8 +40,9 @@
                   " differs from OpenCL C's: name every member, in order of declaration, and use " \
                   "types that are aligned as on the device")
 
-// Whether an aggregate takes one initialiser more than members are named. A struct with constructors is
-// decomposed by a structured binding with as many names: if it has more members, the compiler says so.
+// Whether an aggregate takes one initialiser more than members are named. A struct with
+// constructors is decomposed by a structured binding with as many names: if it has more members,
+// the compiler says so.
 #define CELLIST_STRUCT_HAS_MORE(type, ...)                                                         \
     []<class T>(const T*) {                                                                        \
         if constexpr (std::is_aggregate_v<T> &&                                                    \
@@ -65,8 +67,8 @@
 
 namespace cellist {
 
-/// How a C++ type appears in OpenCL C. Specialise it to teach cellist a type that is not a struct of
-/// yours (see <cellist/glm.hpp>). Members:
+/// How a C++ type appears in OpenCL C. Specialise it to teach cellist a type that is not a struct
+/// of yours (see <cellist/glm.hpp>). Members:
 ///   static constexpr std::size_t size, alignment;          by OpenCL C's rules
 ///   static std::string name();                             e.g. "float4"
 ///   static void define(detail::Definitions&);              adds the definitions that the name needs

@@ -9,6 +9,7 @@
 
 #include <cellist/cellist.hpp>
 
+#include "container_storage.hpp"
 #include "profile.hpp"
 #include "storage_tuner.hpp"
 
@@ -62,8 +63,8 @@ detail::Cost measure(const Device& device, Storage storage, detail::Pattern patt
     detail::Cost least;
     for (int i = 0; i < builds; ++i) {
         detail::Measurement trial;
-        const BuildReport report =
-            lists.core().measure([&] { insert.run(records, lists, is_random); }, trial);
+        const BuildReport report = lists.core().storage().measure(
+            [&] { return lists.build(insert, records, is_random); }, trial);
         if (report.stored != records)
             throw Error(std::to_string(report.stored) + " of " + std::to_string(records) +
                         " records were stored: cellist selftest says what is wrong");
@@ -111,9 +112,8 @@ int tune(const Device& device, std::ostream& out) {
             const detail::Cost cost = measure(device, storage, pattern, records, slots);
             profile.set_cost(storage, pattern, cost);
             out << "  " << std::left << std::setw(9) << detail::name_of(pattern) << std::setw(8)
-                << detail::name_of(storage) << std::right << std::setw(9)
-                << nanoseconds(cost.build_seconds) << std::setw(10)
-                << nanoseconds(cost.read_seconds) << std::endl;
+                << name_of(storage) << std::right << std::setw(9) << nanoseconds(cost.build_seconds)
+                << std::setw(10) << nanoseconds(cost.read_seconds) << std::endl;
         }
     }
     detail::save_profile(info, profile);

@@ -9,6 +9,6 @@ CELLIST_STRUCT(Point, x);
 /// Throws cellist::Error, whatever the device.
 extern "C" __attribute__((visibility("default"))) void plugin_throw() {
     const cellist::Device device = cellist::Device::choose();
-    const cellist::Lists<Point> lists(device, {1}, {.overflow = cellist::Overflow::keep_nearest});
+    const cellist::Lists<Point> lists(device, {1}, {.overflow = cellist::Overflow::stop});
     throw std::runtime_error("no error");
 }

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "layer.hpp"
-#include "storage_tuner.hpp"
+#include "support/internals.hpp"
 #include "support/storages.hpp"
 
 namespace cellist::test {
@@ -583,8 +583,8 @@ Scene::Scene(const Device& on, Storage storage, const Operation& operation)
       insert_both(on, source, "insert_both", lists, other),
       read(on, source, "read", lists) {
     if (operation.automatic)
-        while (lists.core().chooser()->storage() != storage)
-            lists.core().chooser()->measured({{1e-3, 1e-3}, oracle.size(), 10});
+        while (tuner_of(lists)->storage() != storage)
+            tuner_of(lists)->measured({{1e-3, 1e-3}, oracle.size(), 10});
     if (operation.before == Contents::full) build();
     if (operation.use == Use::repeated) operation.run(*this);
 }

@@ -161,7 +161,8 @@ inline std::uint32_t passes_of(Storage storage, std::uint64_t capacity_nodes) {
     const DeviceInfo& info = device().info();
     const std::uint64_t threads = info.compute_units;
     const bool partitions =
-        info.threads && capacity_nodes >= 1024 * threads * std::max<std::uint64_t>(threads / 2, 1);
+        info.one_thread_per_work_group &&
+        capacity_nodes >= 1024 * threads * std::max<std::uint64_t>(threads / 2, 1);
     return storage == Storage::counted && !partitions ? 2 : 1;
 }
 

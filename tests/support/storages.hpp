@@ -11,40 +11,11 @@ namespace cellist::test {
 
 inline constexpr std::array all_storages{Storage::linked, Storage::counted, Storage::fixed};
 
-inline constexpr std::array all_allocations{Allocation::sharded, Allocation::global,
-                                            Allocation::reserved};
-
-constexpr std::string_view name_of(Allocation allocation) {
-    switch (allocation) {
-        case Allocation::sharded:
-            return "sharded";
-        case Allocation::global:
-            return "global";
-        case Allocation::reserved:
-            return "reserved";
-    }
-    return "unknown";
-}
-
-constexpr std::string_view name_of(Storage storage) {
-    switch (storage) {
-        case Storage::linked:
-            return "linked";
-        case Storage::counted:
-            return "counted";
-        case Storage::fixed:
-            return "fixed";
-        case Storage::automatic:
-            return "automatic";
-    }
-    return "unknown";
-}
-
 /// Runs the rest of the test case once for each storage, and names it where an assertion fails in the
 /// same scope.
 #define CELLIST_EACH_STORAGE(name)                                                                 \
     const cellist::Storage name =                                                                  \
         GENERATE(cellist::Storage::linked, cellist::Storage::counted, cellist::Storage::fixed);    \
-    INFO("storage " << cellist::test::name_of(name))
+    INFO("storage " << cellist::name_of(name))
 
 }  // namespace cellist::test

@@ -16,10 +16,12 @@ std::uint32_t slots_of(const Quality& quality) {
 }
 
 std::unique_ptr<Method> make(FragmentSource& source) {
-    return make_list_method(source, {.storage = cellist::Storage::fixed,
-                                     .overflow = cellist::Overflow::keep_nearest,
-                                     .slots = slots_of(source.frame().quality),
-                                     .nearest_by = "key"});
+    // The records that are not among the nearest are dropped.
+    cellist::ListsOptions options{.overflow = cellist::Overflow::drop};
+    options.storage = with_node_type(source.layout().words, [&]<class Node>(const Node*) {
+        return cellist::nearest(&Node::key, slots_of(source.frame().quality));
+    });
+    return make_list_method(source, options);
 }
 
 std::string refusal(const Frame& frame, const Needs&) {

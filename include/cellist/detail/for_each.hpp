@@ -1,7 +1,7 @@
 #pragma once
 
-// CELLIST_FOR_EACH(macro, fixed, a, b, ...) expands to macro(fixed, a) macro(fixed, b) ..., for up to
-// 256 arguments.
+// CELLIST_FOR_EACH(macro, fixed, a, b, ...) expands to macro(fixed, a) macro(fixed, b) ..., for up
+// to 256 arguments.
 
 #define CELLIST_PARENS ()
 #define CELLIST_EXPAND(...)                                                                        \

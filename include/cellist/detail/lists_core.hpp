@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,10 +19,10 @@ namespace cellist::detail {
 
 class Build;
 class CellScan;
-class StorageTuner;
+class ContainerStorage;
 class ListSorter;
 class ListStorage;
-struct Measurement;
+class RecordKernels;
 
 /// What lists are sorted by.
 struct SortKey {
@@ -34,8 +33,25 @@ struct SortKey {
     friend auto operator<=>(const SortKey&, const SortKey&) = default;
 };
 
+/// What a container is doing. Build moves its containers from ready to building, pending and back,
+/// or to failed; ListsCore does the rest.
+enum class Phase {
+    ready,     ///< the lists are complete
+    building,  ///< kernels insert, or the build reviews what they inserted
+    pending,   ///< the kernels are enqueued, and Build::finish() reviews what they inserted
+    slicing,   ///< the lists of a slice are complete, and the caller reads them
+    failed,    ///< the lists are in no order; ListsCore::make_ready() empties them
+};
+
+/// The phase of a container, and what the phase needs.
+struct BuildState {
+    Phase phase = Phase::ready;
+    std::shared_ptr<Build> build = {};  ///< that is pending
+    bool without_pool = false;          ///< the failed lists give the memory of their nodes back
+};
+
 /// Lists without the record's C++ type: a storage, and the kernels that read and sort any storage.
-/// The kernels see the record by its name in OpenCL C. Stays where it is: a build that is pending
+/// The kernels see the record by its name in OpenCL C. Does not move in memory: a pending build
 /// refers to it.
 class ListsCore : public std::enable_shared_from_this<ListsCore> {
 public:
@@ -48,17 +64,13 @@ public:
     /// Enqueues a build of all containers at once: `insert` runs the kernels that fill them.
     static std::shared_ptr<Build> start_build(std::vector<ListsCore*> containers,
                                               std::function<void()> insert);
-    /// Completes after the first passes. The build has failed where this throws.
+    /// Completes after the first passes. The build has failed if this throws.
     [[nodiscard]] static cl::Event marker(Build& build);
-    /// Completes when all that was enqueued on the queues of the containers has.
-    [[nodiscard]] static cl::Event marker_of(const std::vector<ListsCore*>& containers);
     /// The rest of a build: a report for each container. Blocks.
     static const std::vector<BuildReport>& finish(Build& build);
 
     /// A build of this container alone, from which Storage::automatic learns. Blocks.
     BuildReport build(const std::function<void()>& insert);
-    /// The same, with the time that it takes and a read of every record after it. Blocks.
-    BuildReport measure(const std::function<void()>& insert, Measurement& trial);
 
     /// Builds a range of cells at a time, and calls `read` for each.
     BuildReport build_slices(const std::function<void()>& insert,
@@ -68,24 +80,22 @@ public:
     /// Sorts `front` nodes of each list at least.
     cl::Event sort(const SortKey& key, std::uint32_t front);
     cl::Event sort_async(const SortKey& key);
-    /// Divides the work of sorts as on a device of this type; for tests.
-    void sort_as_on(cl_device_type type);
     [[nodiscard]] std::function<Validation()> validate() const;
 
     /// Enqueues the reading of every list's length; `lengths` has them when it has arrived.
     [[nodiscard]] PendingRead read_lengths(std::vector<cl_uint>& lengths) const;
 
-    /// Enqueues the reading of all lists: cells + 1 offsets, and the records. `allocate` takes the most
-    /// records that there can be, and returns where they go. Blocks where there are too many records to
-    /// copy at once, and for a pending build that may still change the lists.
+    /// Enqueues the reading of all lists: cells + 1 offsets, and the records. `allocate` takes the
+    /// most records that there can be, and returns where they go. Blocks where there are too many
+    /// records to copy at once, and for a pending build that may still change the lists.
     void download(ReadbackFence& done, std::vector<cl_uint>& offsets,
                   const std::function<void*(std::uint64_t)>& allocate) const;
 
-    /// Enqueues the writing of cells + 1 offsets, calls `allocate` with the most records there can be,
-    /// and enqueues the copy of a value of each record to the buffer that it returns, one list after the
-    /// other. `declaration` declares a variable for a value in OpenCL C. `member`, appended to a record,
-    /// selects the value, e.g. ".depth"; it is empty for the whole record. Blocks for a pending build
-    /// that may still change the lists.
+    /// Enqueues the writing of cells + 1 offsets, calls `allocate` with the most records there can
+    /// be, and enqueues the copy of a value of each record to the buffer that it returns, one list
+    /// after the other. `declaration` declares a variable for a value in OpenCL C. `member`,
+    /// appended to a record, selects the value, e.g. ".depth"; it is empty for the whole record.
+    /// Blocks for a pending build that may still change the lists.
     void pack(const cl::Buffer& offsets,
               const std::function<const cl::Buffer&(std::uint64_t)>& allocate,
               const std::string& declaration, const std::string& member) const;
@@ -94,60 +104,50 @@ public:
     [[nodiscard]] std::uint64_t capacity_nodes() const;
     [[nodiscard]] std::uint64_t pool_bytes() const;
     [[nodiscard]] const std::shared_ptr<DeviceState>& device() const { return device_.state(); }
-    [[nodiscard]] const std::string& record() const { return definitions_.records.back().name; }
-    /// What is in use, never Storage::automatic.
-    [[nodiscard]] Storage storage_in_use() const { return in_use_; }
+    /// The storage in use, never Storage::automatic.
+    [[nodiscard]] Storage storage_in_use() const;
     [[nodiscard]] std::string storage_reason() const;
-    /// Of Storage::automatic; null otherwise. For tests, which tell it of times of their own.
-    [[nodiscard]] StorageTuner* tuner() const { return tuner_.get(); }
     /// The mode in which the lists are read, as in view.h.
     [[nodiscard]] unsigned mode() const;
 
-    /// Adds what CELLIST_LISTS declares. Blocks for a pending build that may still change the lists.
+    /// Adds what CELLIST_LISTS declares. Blocks for a pending build that may still change the
+    /// lists.
     void add_to(Arguments& arguments) const;
 
     /// Completes when all that was enqueued has.
     [[nodiscard]] cl::Event marker() const;
-    /// Ends a pending build, and empties lists that a failure has left in no order. Throws what the
-    /// build throws, or what fails still.
-    void settle() const;
-    /// The same where what is enqueued next would otherwise find incomplete lists.
-    void settle_for_commands() const;
-    /// Throws Error where the function that inserts uses the container that it fills.
-    void refuse_while_open() const;
-    /// The same, and throws Error where the caller is reading a slice of the container.
+    /// Ends a pending build, and empties failed lists. Throws what the build throws, or what still
+    /// fails.
+    void make_ready() const;
+    /// The same, unless commands that are enqueued next find complete lists anyway.
+    void make_ready_for_commands() const;
+    /// Throws Error if the function that inserts uses the container that it fills.
+    void refuse_while_building() const;
+    /// The same, and throws Error if the caller is reading a slice of the container.
     void refuse_build() const;
 
-    /// Whether kernels may insert now.
-    [[nodiscard]] bool is_open() const;
-    /// Enqueues the reading of the number of inserts that were refused outside a build: low and high word.
+    /// Whether kernels may insert.
+    [[nodiscard]] bool is_building() const { return state_.phase == Phase::building; }
+    /// Enqueues the reading of the number of inserts that were refused outside a build: low and
+    /// high word.
     [[nodiscard]] PendingRead read_late(std::array<cl_uint, 2>& words) const;
     /// E.g. "lists of Hit of shape 17 x 3".
     [[nodiscard]] std::string description() const;
 
+    [[nodiscard]] ContainerStorage& storage() const { return *storage_; }
+    [[nodiscard]] ListSorter& sorter();
+
     // For Build.
-    [[nodiscard]] ListStorage& storage() const { return *storage_; }
-    /// Puts the chosen storage in place, and starts a build in it.
-    void start();
-    /// What the storage's review() says. Where an automatic storage fails and another may not, that
-    /// takes its place, and the lists are not complete.
-    bool review(BuildReport& report);
-    /// Whether review() can change the lists.
-    [[nodiscard]] bool review_may_change() const;
-    void set_pending(std::shared_ptr<Build> build) { pending_ = std::move(build); }
-    void empty_after_failure(bool without_pool) noexcept;
+    void enter(BuildState state) { state_ = std::move(state); }
+    /// The lists are failed, and empty if the device still works. `without_pool` gives the memory
+    /// of the nodes back; the next build grows anew.
+    void fail(bool without_pool) noexcept;
 
 private:
-    [[nodiscard]] ListSorter& sorter();
-    /// Throws Error where no Lists object refers to the built container any more, because the function
+    /// Throws Error if no Lists object refers to the built container any more, because the function
     /// that inserts has replaced it.
     static void refuse_orphan(const std::shared_ptr<ListsCore>& self);
-    BuildReport build_once(const std::function<void()>& insert);
-    void measure_walk(Measurement& trial) const;
-    void use(Storage storage);
-    bool replace(const BuildReport& report, const char* why, bool for_ever);
-    Kernel& kernel(const std::string& name, std::string_view source,
-                   const std::string& definitions = {}) const;
+    [[nodiscard]] ListStorage& in_use() const;
     [[nodiscard]] Range cell_range() const;
     [[nodiscard]] Memory device_lengths(std::uint64_t words) const;
     [[nodiscard]] std::uint64_t most_records() const;
@@ -166,19 +166,10 @@ private:
                                           const std::vector<cl_uint>& counts) const;
 
     MemoryOwner device_;
-    Definitions definitions_;
     Shape shape_;
-    ListsOptions options_;
-    std::unique_ptr<StorageTuner> tuner_;  ///< of Storage::automatic
-    Storage in_use_;
-    bool has_chosen_ = false;  ///< storage_ is what use() made, with its pool
-    std::unique_ptr<ListStorage> storage_;
-    std::shared_ptr<Build> pending_;  ///< a build that is not finished yet
-    bool in_slices_ = false;          ///< a build in slices is under way: the storage stays
-    bool reading_slice_ = false;
-    mutable bool broken_ = false;  ///< lists in no order: a failed build or clear() left them so
-    bool without_pool_ = false;    ///< the memory of the nodes is to be given back then
-    mutable std::map<std::string, Kernel> kernels_;  ///< the library's, by name and definitions
+    mutable BuildState state_;
+    std::unique_ptr<RecordKernels> kernels_;
+    std::unique_ptr<ContainerStorage> storage_;
     mutable std::unique_ptr<CellScan> scan_;
     std::unique_ptr<ListSorter> sorter_;
 };

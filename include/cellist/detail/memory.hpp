@@ -40,7 +40,7 @@ private:
 
 [[noreturn]] void throw_no_host_memory(std::uint64_t count, std::size_t element_bytes);
 
-/// Host memory for the elements of a result. Throws Error where there is not enough.
+/// Host memory for the elements of a result. Throws MemoryError if there is not enough.
 template <class T>
 [[nodiscard]] std::vector<T> host_memory(std::uint64_t count) {
     try {
@@ -55,8 +55,9 @@ template <class T>
 class Memory {
 public:
     Memory() = default;
-    /// `count` elements of `element_bytes`. Throws Error beyond the device's limit, naming `what`, and
-    /// OpenClError where there is no memory; some drivers of GPUs tell so only at the first use.
+    /// `count` elements of `element_bytes`. Throws MemoryError beyond the device's limit, naming
+    /// `what`, and OpenClError if there is no memory; some drivers of GPUs tell so only at the
+    /// first use.
     Memory(std::shared_ptr<DeviceState> state, std::uint64_t count, std::size_t element_bytes,
            const char* what = "buffer");
     /// The same; its size counts towards the owner's total while the memory exists.
@@ -86,8 +87,8 @@ public:
     cl::Event write_later(const void* source, std::size_t bytes);
     [[nodiscard]] PendingRead read_later(void* target, std::size_t bytes,
                                          std::uint64_t from_byte = 0) const;
-    /// Repeats a pattern over the first `bytes`. Blocks only where the pattern's size is no power of
-    /// two up to 128.
+    /// Repeats a pattern over the first `bytes`. Blocks only where the pattern's size is no power
+    /// of two up to 128.
     void fill(const void* pattern, std::size_t pattern_bytes, std::size_t bytes);
 
 private:

@@ -8,7 +8,8 @@
 
 namespace cellist::detail {
 
-/// A pointer from an object of a movable class to what it owns. Every use after a move throws Error.
+/// A pointer from an object of a movable class to what it owns. Every use after a move throws
+/// Error.
 template <class Pointer>
 class Owned {
 public:

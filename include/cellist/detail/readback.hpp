@@ -11,8 +11,8 @@
 
 namespace cellist::detail {
 
-/// A read that was enqueued. When the event has completed, the bytes are in `staged`, or where that is null
-/// in `target`.
+/// A read that was enqueued. When the event has completed, the bytes are in `staged`, or where that
+/// is null in `target`.
 struct PendingRead {
     cl::Event event = {};
     std::shared_ptr<std::byte> staged = {};
@@ -35,8 +35,8 @@ public:
         if (reading.staged) staged_.push_back(std::move(reading));
         return *this;
     }
-    /// The event that completes when wait() has nothing to wait for. Not a copy by the bindings: those throw an error
-    /// of their own.
+    /// The event that completes when wait() has nothing to wait for. Not a copy by the bindings:
+    /// those throw an error of their own.
     [[nodiscard]] cl::Event event() const {
         const cl_int code = event_() == nullptr ? CL_SUCCESS : clRetainEvent(event_());
         if (code != CL_SUCCESS) throw OpenClError("clRetainEvent", code);
@@ -53,8 +53,8 @@ public:
             std::memcpy(reading.target, reading.staged.get(), reading.bytes);
         staged_.clear();
     }
-    /// The same where nobody asks for the data any more. A wait that fails is tried again; a device that
-    /// cannot be waited for twice is taken for lost, and not to write any more.
+    /// The same where nobody asks for the data any more. A wait that fails is tried again; a device
+    /// that cannot be waited for twice is taken for lost, and not to write any more.
     void settle() noexcept {
         if (event_() == nullptr) return;
         if (clWaitForEvents(1, &event_()) != CL_SUCCESS) clWaitForEvents(1, &event_());

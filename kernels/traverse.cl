@@ -6,8 +6,8 @@
 // The host defines CELLIST_WORD, the largest of uchar and uint that divides the record.
 #include <cellist/lists.clh>
 
-kernel void cellist_walk(CELLIST_LISTS(CELLIST_RECORD, lists), uint most,
-                         volatile global uint* found) {
+kernel void cellist_traverse(CELLIST_LISTS(CELLIST_RECORD, lists), uint most,
+                             volatile global uint* found) {
     const uint cell = get_global_id(0);
     if (cell >= cellist_cells(lists)) return;
     uint length = 0;
@@ -15,7 +15,8 @@ kernel void cellist_walk(CELLIST_LISTS(CELLIST_RECORD, lists), uint most,
     cellist_for_each(lists, cell, node) {
         if (length == most) break;
         global const CELLIST_WORD* words = (global const CELLIST_WORD*)&cellist_get(lists, node);
-        for (uint i = 0; i < sizeof(struct CELLIST_RECORD) / sizeof(CELLIST_WORD); ++i) sum += words[i];
+        for (uint i = 0; i < sizeof(struct CELLIST_RECORD) / sizeof(CELLIST_WORD); ++i)
+            sum += words[i];
         ++length;
     }
     // The read is a hint that saves most atomics.
