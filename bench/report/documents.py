@@ -14,7 +14,7 @@ import tables
 import whole_files
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-DOCUMENTS = ("README.md", "docs/performance.md", "docs/transparency.md")
+DOCUMENTS = ("README.md", "docs/performance.md", "docs/transparency-results.md")
 PLOT_TITLES = {
     "throughput": "throughput against size",
     "ceiling": "inserts against the ceiling",

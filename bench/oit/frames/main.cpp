@@ -1,5 +1,5 @@
 // Speed and accuracy of transparency on the device that CELLIST_DEVICE names: the figures that
-// docs/transparency.md has.
+// docs/transparency-results.md has.
 
 #include <iostream>
 #include <thread>
