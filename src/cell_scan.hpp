@@ -8,8 +8,8 @@
 
 namespace cellist::detail {
 
-/// Sums over the counts of all cells, and where lists start that have these lengths. The counts are
-/// words of a head buffer, from `counts_at` on. Nothing blocks.
+/// Sums the counts of all cells, and computes where lists of these lengths start. The counts are
+/// words of a head buffer, from `counts_at` on. No call blocks.
 class CellScan {
 public:
     CellScan(const MemoryOwner& device, std::uint64_t cells, cl_uint counts_at);
@@ -21,11 +21,12 @@ public:
     };
     /// Enqueues the sums of min(count, limit).
     void sum(const cl::Buffer& heads, cl_uint limit);
-    /// Enqueues the reading of the totals of the last sum(): `totals` has them once the event has
-    /// completed.
+    /// Enqueues a read of the totals of the last sum(). `totals` has them after the wait() of a
+    /// ReadbackFence that was assigned this read.
     [[nodiscard]] PendingRead read_later(Totals& totals) const;
-    /// Writes the offsets of the lists, none over `capacity_nodes`: one a cell, and the end of the last
-    /// list. They may take the place of the counts. Follows a sum() of the same counts without a limit.
+    /// Enqueues a write of the offsets of the lists, none over `capacity_nodes`: one for each cell,
+    /// and the end of the last list. They may overwrite the counts. Call sum() first, with the same
+    /// counts and no limit.
     void write_offsets(const cl::Buffer& heads, const cl::Buffer& offsets,
                        std::uint64_t capacity_nodes);
 

@@ -24,7 +24,7 @@ class Lists;
 
 namespace detail {
 
-/// What a Lists object hands to a kernel; defined by the library's sources.
+/// The part of a Lists object that does not depend on the record type.
 class ListsCore;
 
 /// The arguments of one launch, in order.
