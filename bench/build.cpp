@@ -1,5 +1,5 @@
-// Whole builds, from the call to the report: clearing, the runs of the user's kernel, and what the
-// storage does around them. Host time, launches included.
+// Whole builds, from the call to the report: clearing, the runs of the user's kernel, and the other
+// work of the storage. Host time, with launches.
 
 #include <chrono>
 
@@ -10,8 +10,7 @@ namespace bench {
 
 namespace {
 
-/// What build() does with nothing but the defaults: 4,096 records into 64 x 64 cells, on a device as a
-/// user gets it.
+/// build() with all defaults: 4,096 records into 64 x 64 cells, on the default device.
 Result small_build(const Suite& suite) {
     constexpr cl_uint nodes = 4096;
     const Workload workload{.occupancy = 1, .nodes = nodes};

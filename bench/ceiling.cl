@@ -1,5 +1,5 @@
-// What the hardware allows an insert, with the work-item's index as the address instead of an
-// allocation. A node is stored in one piece, and every kernel guards its range as an insert does.
+// The hardware's limits for an insert. The work-item's index is the address, so there is no
+// allocation. A node is stored at once. Every kernel checks its range, as an insert does.
 //
 //   heads   cells     the index of the last node of each cell
 //   nodes   count     the words of a record, then the link
@@ -30,8 +30,8 @@ kernel void store(global bench_node* nodes, uint cells, uint distribution, uint 
 kernel void exchange(volatile global uint* heads, uint cells, uint distribution, uint count) {
     const uint i = get_global_id(0);
     if (i >= count) return;
-    // No head ever holds the index of this work-item before, but no compiler knows, so the exchange
-    // has to return what it found.
+    // No head holds the index of this work-item yet. Compilers do not know this, so the exchange
+    // must return the old value.
     const uint found = atomic_xchg(&heads[bench_cell(i, cells, distribution)], i);
     if (found == i) heads[0] = 0;
 }
@@ -44,7 +44,7 @@ kernel void exchange_and_store(volatile global uint* heads, global bench_node* n
     nodes[i] = BENCH_NODE(i, next);
 }
 
-// The same in the order that inserts keep: the whole node, the exchange, the link.
+// The same in an insert's order: the whole node, the exchange, the link.
 kernel void store_exchange_link(volatile global uint* heads, global bench_node* nodes, uint cells,
                                 uint distribution, uint count) {
     const uint i = get_global_id(0);
@@ -54,7 +54,7 @@ kernel void store_exchange_link(volatile global uint* heads, global bench_node* 
     ((global uint*)&nodes[i])[BENCH_WORDS] = next;
 }
 
-// Walks every list that exchange_and_store made and writes its digest; one work-item a cell.
+// Traverses every list of exchange_and_store and writes its digest; one work-item a cell.
 kernel void read_nodes(global const uint* heads, global const uint* nodes, global uint* digests) {
     const uint cell = get_global_id(0);
     uint digest = 0;

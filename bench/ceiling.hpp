@@ -8,11 +8,11 @@
 
 namespace bench {
 
-/// What the hardware allows an insert: see ceiling.cl. There are several buffers, which are used by
-/// turns, as containers are. Each function returns the seconds that one run took on the device.
+/// The hardware's limits for an insert; see ceiling.cl. Several buffers are used in turn, as
+/// containers are. Each function returns the device seconds of one run.
 class Ceilings {
 public:
-    /// Throws std::runtime_error where the lists that exchange_and_store() makes are wrong.
+    /// Throws std::runtime_error if the lists of exchange_and_store() are wrong.
     Ceilings(const Suite& suite, const Workload& workload);
 
     double copy();

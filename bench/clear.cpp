@@ -1,4 +1,4 @@
-// Emptying all lists, in host time. What is processed are cells.
+// Clears all lists, in host time. The items are cells.
 
 #include "support/containers.hpp"
 

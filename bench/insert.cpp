@@ -1,7 +1,7 @@
-// Inserting alone: what the device takes for the runs of the user's kernel in a build. In Storage::counted these
-// are two, or one where the library moves the records afterwards, which is not part of it. Runs of the ceiling
-// are taken by turns with those of the insert, so that the fraction of it that is reached does not depend on what
-// else the machine does.
+// The insert alone: device time for the runs of the user's kernel in a build. Storage::counted has
+// two runs. It has one if the library moves the records afterwards, which does not count. Runs of
+// the ceiling and of the insert are interleaved, so that other work on the machine does not change
+// their ratio.
 
 #include <numeric>
 

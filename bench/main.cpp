@@ -1,5 +1,6 @@
-// The benchmarks, on Google Benchmark. Medians of at least 7 runs, by the device's clock where a case is
-// one kernel, by the host's where it is a call. Results are checked once a case, before it is timed.
+// The benchmarks, on Google Benchmark. Times are medians of at least 7 runs. The device's clock
+// times single kernels, and the host's clock times calls. The results of each case are checked
+// once, before it is timed.
 
 #include <algorithm>
 #include <array>
@@ -66,7 +67,7 @@ bench::Effort effort(std::string_view text) {
     throw std::invalid_argument("'" + std::string(text) + "' is not tiny, quick or full");
 }
 
-/// Takes what is no option of Google Benchmark.
+/// Takes the arguments that Google Benchmark does not know.
 Options parse(int argc, char** argv) {
     Options options;
     for (int i = 1; i < argc; ++i) {
@@ -98,14 +99,14 @@ cl_uint default_nodes(const cellist::Device& device, bench::Effort effort) {
     return effort == bench::Effort::quick ? full / 4 : full;
 }
 
-/// The same device, with a queue whose events have times.
+/// The same device with a profiling queue.
 cellist::Device profiled(const cellist::Device& device) {
     const cl::CommandQueue& queue = device.queue();
     return {device.context(), cl::CommandQueue(device.context(), queue.getInfo<CL_QUEUE_DEVICE>(),
                                                CL_QUEUE_PROFILING_ENABLE)};
 }
 
-/// Where a device is on its bus, as CUDA writes it; empty where it does not say so.
+/// The PCI bus address of a device, as CUDA writes it; empty if unknown.
 std::string bus_of(const cellist::Device& device) {
     const cl::Device opencl = device.queue().getInfo<CL_QUEUE_DEVICE>();
     cl_device_pci_bus_info_khr at{};
@@ -118,8 +119,8 @@ std::string bus_of(const cellist::Device& device) {
     return text.data();
 }
 
-/// What Google Benchmark would write to --benchmark_out without looking whether it could: taken out of
-/// the arguments, so that it does not.
+/// Removes --benchmark_out from the arguments and returns its file. Google Benchmark would write it
+/// without a check for errors.
 std::string take_out_file(int& argc, char** argv) {
     constexpr std::string_view option = "--benchmark_out=";
     std::string file;

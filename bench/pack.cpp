@@ -1,4 +1,4 @@
-// Packing: a contiguous copy of all lists, in host time. Its buffers are allocated in each run.
+// Packs all lists into a contiguous copy, in host time. Each run allocates the buffers.
 
 #include "support/containers.hpp"
 #include "support/moved_bytes.hpp"

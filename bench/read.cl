@@ -1,4 +1,5 @@
-// Walks every list once and writes its digest: one work-item and one element of `digests` a cell.
+// Traverses every list once and writes its digest: one work-item and one element of `digests` a
+// cell.
 #include <cellist/lists.clh>
 
 kernel void read(CELLIST_LISTS(RECORD, lists), global uint* digests) {
@@ -8,7 +9,7 @@ kernel void read(CELLIST_LISTS(RECORD, lists), global uint* digests) {
     digests[cell] = digest;
 }
 
-// The same of lists that lie behind one another: list c ends where list c + 1 begins.
+// The same for contiguous lists: list c ends where list c + 1 begins.
 kernel void read_packed(global const uint* offsets, global const RECORD* records,
                         global uint* digests) {
     const uint cell = get_global_id(0);

@@ -1,4 +1,4 @@
-// Walking every list once, in device time.
+// Traverses every list once, in device time.
 
 #include "support/containers.hpp"
 #include "support/moved_bytes.hpp"

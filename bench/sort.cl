@@ -1,4 +1,4 @@
-// Counts the nodes with a lesser key than the node before them in their list; one work-item a cell.
+// Counts the nodes whose key is less than that of the node before; one work-item a cell.
 #include <cellist/lists.clh>
 
 kernel void count_unsorted(CELLIST_LISTS(RECORD, lists), volatile global uint* unsorted) {

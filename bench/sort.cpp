@@ -1,5 +1,5 @@
-// Sorting every list by its key, in host time. The lists are built anew before each run, so that none
-// is sorted already.
+// Sorts every list by its key, in host time. Each run builds the lists again, so that none is
+// already sorted.
 
 #include "support/containers.hpp"
 #include "support/moved_bytes.hpp"

@@ -1,4 +1,4 @@
-// A build and one read of all lists, in host time: what a user waits for, by storage.
+// One build and one read of all lists for each storage, in host time.
 
 #include <deque>
 
@@ -29,7 +29,7 @@ public:
         return {build, read};
     }
 
-    /// Room for this many records is there for each that is stored.
+    /// Nodes in the pool for each stored record.
     [[nodiscard]] double nodes_a_record() {
         return static_cast<double>(containers_.next().capacity_nodes()) / workload_.nodes;
     }
@@ -56,7 +56,7 @@ Result build_read(const Suite& suite, const Workload& workload, const Keeping& k
             {{"build_ms", 1e3 * samples[1].median}, {"read_ms", 1e3 * samples[2].median}}};
 }
 
-/// Calls `use` with the positions of each storage that the library chooses and each that it may choose.
+/// Calls `use` with each automatic storage and each storage that it may choose, by position.
 template <class Use>
 void for_each_choice(const std::vector<Keeping>& keepings, const Use& use) {
     const auto is_chosen = [&](std::size_t i) {
@@ -67,10 +67,10 @@ void for_each_choice(const std::vector<Keeping>& keepings, const Use& use) {
             if (is_chosen(i) && !is_chosen(j)) use(i, j);
 }
 
-/// All storages by turns, and those that the library chooses: so that what else the machine does
-/// falls on all of them. The time of the case is that of one round. `automatic_1_to_linked` and the like
-/// are medians of the ratios of both in the same round: a machine that is slow for some rounds changes
-/// those less than the ratio of two medians.
+/// All storages and the automatic ones, interleaved, so that other work on the machine slows all of
+/// them. The time of the case is that of one round. `automatic_1_to_linked` and similar figures are
+/// medians of ratios within a round. A machine that is slow for some rounds changes them less than
+/// the ratio of two medians.
 Result compare_storages(const Suite& suite, const Workload& workload) {
     std::vector<Keeping> keepings = storages();
     keepings.insert(keepings.end(), automatic_storages().begin(), automatic_storages().end());
@@ -81,7 +81,7 @@ Result compare_storages(const Suite& suite, const Workload& workload) {
     for (const Keeping& keeping : keepings)
         works.emplace_back(suite, workload, keeping, Input::generated, keepings.size());
 
-    // After the time of a round: build and read of each storage, then the ratios.
+    // The time of a round comes first, then build and read of each storage, then the ratios.
     const std::vector<Samples> samples = sample(suite.sampling(), [&] {
         std::vector<std::pair<double, double>> times;
         for (BuildRead<Record12>& work : works) times.push_back(work.run());
@@ -113,8 +113,8 @@ Result compare_storages(const Suite& suite, const Workload& workload) {
     return result;
 }
 
-/// The workloads that storages are compared on: 5 distributions by 5 occupancies, a quarter of the
-/// usual size, or so small that every list can be read by one work-item.
+/// The workloads of the comparison: 5 distributions by 5 occupancies at a quarter of the usual
+/// size, or smaller, so that one work-item can read each list.
 std::vector<Workload> storage_grid(const Suite& suite) {
     std::vector<cl_uint> occupancies{1, 4, 16, 64, 256};
     if (suite.effort() == Effort::tiny) occupancies = {4};

@@ -24,7 +24,7 @@ double error_of(const glm::dvec3& colour, const cl_float4& pixel) {
     return error;
 }
 
-// The light that a pixel's fragments send, without what is behind them, in some order.
+// The light of a pixel's fragments in some order, without the background.
 glm::dvec3 light_of(Fragments fragments, const std::vector<std::size_t>& order,
                     std::size_t samples) {
     const oit::ReferenceOptions options;
@@ -38,7 +38,7 @@ glm::dvec3 light_of(Fragments fragments, const std::vector<std::size_t>& order,
     return sum / static_cast<double>(samples);
 }
 
-// The fragments from `first` to before `end`, each close to the next.
+// The fragments from `first` up to `end` (exclusive), each close to the next.
 struct Group {
     std::size_t first, end;
 };
@@ -56,7 +56,7 @@ std::vector<Group> groups_of(Fragments fragments) {
     return groups;
 }
 
-// The next combination of orders within the groups; false behind the last.
+// The next combination of orders within the groups; false after the last.
 bool next_order(std::vector<std::size_t>& order, const std::vector<Group>& groups) {
     return std::ranges::any_of(groups, [&](const Group& group) {
         const auto at = [&](std::size_t i) {
@@ -68,7 +68,7 @@ bool next_order(std::vector<std::size_t>& order, const std::vector<Group>& group
 
 }  // namespace
 
-// What is behind the fragments counts the same in each order, for the light that passes is a product.
+// The background has the same effect in each order, because the light that passes is a product.
 bool any_other_order(const oit::Reference& reference, std::size_t pixel, int samples, int most,
                      const std::function<bool(const glm::dvec3&)>& use) {
     const std::uint64_t first = reference.offsets[pixel];

@@ -16,19 +16,19 @@ namespace {
 
 using glm::vec3;
 
-// Screen coordinates have 8 bits behind the point; the centre of pixel x is at 256 x + 128.
+// Screen coordinates have 8 fractional bits; the centre of pixel x is at 256 x + 128.
 constexpr int subpixel_bits = 8;
 constexpr int subpixels = 1 << subpixel_bits;
 constexpr int half = subpixels / 2;
 
-// The pixels whose centres lie from one coordinate to another.
+// The pixels whose centres lie between two coordinates.
 int first_pixel(std::int32_t low) { return std::max(0, (low + half - 1) >> subpixel_bits); }
 int end_pixel(std::int32_t high, int side) {
     return std::min(side, (high + half) >> subpixel_bits);
 }
 
-// An edge function: twice the area between an edge and a pixel centre, positive inside. Pixels on a
-// top or left edge are inside, on others not: their value is shifted by one.
+// An edge function: twice the area between an edge and a pixel centre, positive inside. Pixels on
+// a top or left edge are inside. Those on other edges are outside: their value is shifted by one.
 struct Edge {
     std::int64_t value, across, down, shift;
 
@@ -140,8 +140,8 @@ void PlainCpp::project(const support::Mesh& mesh, const raster::RasterInstance& 
     }
 }
 
-// Calls emit(x, y, depth, normal, front) for each pixel whose centre a triangle covers; the normal is
-// that of the side that is seen.
+// Calls emit(x, y, depth, normal, front) for each pixel whose centre a triangle covers. The normal
+// belongs to the visible side.
 template <class Emit>
 void PlainCpp::scan(const Vertex& a, const Vertex& b, const Vertex& c, const Emit& emit) const {
     const auto [x_low, x_high] = std::minmax({a.x, b.x, c.x});
@@ -166,7 +166,7 @@ void PlainCpp::scan(const Vertex& a, const Vertex& b, const Vertex& c, const Emi
         std::int64_t v0 = e0.value, v1 = e1.value, v2 = e2.value;
         for (int x = x_begin; x < x_end; ++x) {
             if ((v0 | v1 | v2) >= 0) {
-                // The corners' parts, each over its depth.
+                // The weights of the corners, each divided by its depth.
                 const float p0 = static_cast<float>(v0 + e0.shift) * s0;
                 const float p1 = static_cast<float>(v1 + e1.shift) * s1;
                 const float p2 = static_cast<float>(v2 + e2.shift) * s2;
@@ -216,7 +216,7 @@ void PlainCpp::draw_surfaces(bool opaque) {
     }
 }
 
-// Front to back; leaves the lists empty for the next frame while they are at hand.
+// Blends front to back, and empties the lists for the next frame while they are in the cache.
 void PlainCpp::blend() {
     const oit::Look& look = frame_.scene.look;
     const auto nearer = [](const Fragment& a, const Fragment& b) { return a.depth < b.depth; };

@@ -11,18 +11,18 @@
 
 namespace bench {
 
-/// What one writes without a device: the frame in plain C++ on one thread, in float. Triangles are
-/// scanned by edge functions, opaque ones against a depth buffer; each pixel has a std::vector of its
-/// transparent fragments, which std::sort orders by depth before they are blended. Vectors keep their
-/// memory from frame to frame.
+/// Draws a frame in plain C++ on one thread, in float, as one would write it without a device. Edge
+/// functions scan the triangles. Opaque triangles use a depth buffer. Each pixel has a std::vector
+/// of its transparent fragments. std::sort orders them by depth before they are blended. Vectors
+/// keep their memory from frame to frame.
 class PlainCpp {
 public:
-    /// Refers to the frame, which must outlive it. Throws std::invalid_argument where the frame has
-    /// more than what the scenes of meshes and `gearworks` need: one eye, one sample, surfaces that
-    /// cover or hide, in front of the near plane.
+    /// Refers to the frame, which must outlive it. Supports what meshes and `gearworks` need: one
+    /// eye, one sample, and covering or opaque surfaces in front of the near plane. Throws
+    /// std::invalid_argument for other frames.
     explicit PlainCpp(const oit::Frame& frame);
 
-    /// Draws once: milliseconds from the vertices to the image.
+    /// Draws once. Returns the milliseconds from the vertices to the image.
     double draw();
 
     /// The linear image, row by row from the top.

@@ -1,6 +1,6 @@
-// What the path through Boost.Compute needs beside its sort: bounds, and one read of every list.
+// The steps of the Boost.Compute path after its sort: bounds, and one read of every list.
 
-// Where each cell's items begin, in cells that are sorted. One work-item for each item and one more;
+// Finds where each cell's items begin in sorted cells. One work-item for each item and one more;
 // offsets has cell_count + 1 elements.
 kernel void find_bounds(global const uint* cells, uint count, uint cell_count,
                         global uint* offsets) {
@@ -24,7 +24,7 @@ kernel void read_values(global const uint* offsets, global const uint4* values,
     digests[cell] = digest;
 }
 
-// Records stay where they were, and are read through indices.
+// Records stay in place, and are read through indices.
 kernel void read_indexed(global const uint* offsets, global const uint* indices,
                          global const RECORD* records, global uint* digests) {
     const uint cell = get_global_id(0);
@@ -34,7 +34,7 @@ kernel void read_indexed(global const uint* offsets, global const uint* indices,
     digests[cell] = digest;
 }
 
-// The input: cells, and as values the records in four words or their indices.
+// The input: cells, and values, which are records of four words or their indices.
 kernel void store_values(global uint* cells, global uint4* values, uint cell_count,
                          uint distribution) {
     const uint i = get_global_id(0);

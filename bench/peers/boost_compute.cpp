@@ -1,6 +1,6 @@
-// Boost.Compute on the same device: sort_by_key of the records by their cell, then bounds and one read.
-// With the records as values, padded to 16 bytes; and with indices as values, through which the records
-// are read. Host time; the input lies in memory.
+// Boost.Compute on the same device: sort_by_key of the records by their cell, then bounds and one
+// read. Values are the records, padded to 16 bytes, or indices through which the records are read.
+// Host time; the input is in memory.
 
 #define CL_TARGET_OPENCL_VERSION 300
 #include <boost/compute/algorithm/sort_by_key.hpp>
@@ -117,7 +117,7 @@ private:
 
 void add_peer_boost_compute(Suite& suite) {
     for (const Workload& workload : suite.readable_bases()) {
-        // Two arrays of cells and two of values, and what the sort takes beside them.
+        // Two arrays of cells and two of values, and the memory of the sort.
         const double values_bytes = double(workload.nodes) * sizeof(cl_uint4);
         if (!fits(suite.device().info(), values_bytes, 5 * values_bytes)) continue;
         suite.add("sort_path/peer:boost_compute/" + workload.name(), [&suite, workload] {

@@ -1,14 +1,13 @@
-// Plain C++: counting sort on all threads, in two ways.
+// Plain C++: two counting sorts on all threads.
 //
-//   direct        a histogram of the cells for each thread, prefix sums over cells and threads, and a
-//                 scatter in which each thread knows where its records go. Destinations are fetched
-//                 into the cache some records ahead.
-//   partitioned   the records go to partitions of cells first, so small that a core's cache holds one,
-//                 in whole cache lines that bypass the cache; then each partition is counted and
-//                 scattered within the cache. After Polychroniou and Ross, "A Comprehensive Study of
-//                 Main-Memory Partitioning", SIGMOD 2014.
+//   direct        a histogram of the cells for each thread, prefix sums over cells and threads,
+//                 and a scatter. Destinations are prefetched some records ahead.
+//   partitioned   the records first go to partitions of cells that fit into a core's cache, in
+//                 whole cache lines that bypass the cache. Each partition is then counted and
+//                 scattered within the cache. After Polychroniou and Ross, "A Comprehensive Study
+//                 of Main-Memory Partitioning", SIGMOD 2014.
 //
-// Each with input that lies in memory, and with input that the loops compute, as a kernel does.
+// The input is in memory, or the loops compute it, as a kernel does.
 
 #include <array>
 #include <atomic>
@@ -28,7 +27,7 @@ using namespace peers;
 
 namespace {
 
-/// Records that are computed where they are needed. The distribution is known at compile time.
+/// Records that are computed on demand. The distribution is known at compile time.
 template <cl_uint distribution>
 struct Generated {
     cl_uint cells;
@@ -40,7 +39,7 @@ struct Generated {
     }
 };
 
-/// Records in memory. Cells lie apart, because the histogram needs nothing else.
+/// Records in memory. Cells have their own array, because the histogram needs only them.
 struct Stored {
     explicit Stored(const Workload& workload)
         : cells(uninitialized<cl_uint>(workload.nodes)),
@@ -58,7 +57,7 @@ struct Stored {
     Array<Record12> records;
 };
 
-/// Room for numbers of each thread, in cache lines of their own.
+/// Numbers of each thread, in separate cache lines.
 class Histograms {
 public:
     Histograms(unsigned threads, std::size_t size)
@@ -70,9 +69,9 @@ private:
     std::vector<cl_uint> counts_;
 };
 
-/// Turns counts of `size` bins for each thread into the place where each thread writes its first
-/// record of a bin: bins in order, and threads in order within a bin. Every thread calls it, between
-/// barriers of its own; `offsets` gets the begin of each bin.
+/// Turns each thread's counts of `size` bins into the offset of its first record in each bin. Bins
+/// are in order, and so are threads within a bin. Every thread calls it, between its own barriers.
+/// `offsets` gets the begin of each bin.
 class PrefixSums {
 public:
     PrefixSums(unsigned threads, std::size_t size)
@@ -170,7 +169,7 @@ struct alignas(64) Line {
     Item items[items_max];
 };
 
-/// Writes a cache line past the caches, where the processor can.
+/// Writes a cache line past the caches if the processor can.
 inline void stream(Line& to, const Line& from) {
 #if defined(__SSE2__)
     for (int i = 0; i < 4; ++i)
@@ -230,7 +229,7 @@ public:
     }
 
 private:
-    /// Partitions of about 256 KiB of items, at most 512 of them: so their lines fit the first cache.
+    /// At most 512 partitions of about 256 KiB of items, so that their lines fit the first cache.
     static unsigned shift_for(const Workload& workload) {
         const std::uint64_t wanted = std::uint64_t{workload.nodes} * sizeof(Item) / (256 << 10);
         const std::uint64_t partitions =
@@ -238,7 +237,7 @@ private:
         return static_cast<unsigned>(std::bit_width(workload.cells() / partitions)) - 1;
     }
 
-    /// Moves a thread's items to their partitions. `next` is where the next item of each goes.
+    /// Moves a thread's items to their partitions. `next` is the offset of the next item of each.
     void partition(unsigned thread, std::uint64_t first, std::uint64_t last, cl_uint* next) {
         Line* buffers = &buffers_[thread * partitions_];
         std::vector<cl_uint> begins(next, next + partitions_);
@@ -249,7 +248,7 @@ private:
             buffers[p].items[slot] = {cell, input_.record(i)};
             const cl_uint end = ++next[p];
             if (slot + 1 < Line::items_max) continue;
-            // The first line of a thread's part of a partition may be shared with another thread.
+            // Another thread may share the first line of a thread's part of a partition.
             if (end - begins[p] >= Line::items_max)
                 stream(lines_[(end - 1) / Line::items_max], buffers[p]);
             else

@@ -1,8 +1,8 @@
-// CUB on an NVIDIA GPU, as a program of its own: sorts the same input as cellist_bench does, and prints
-// the times as Google Benchmark would, in JSON on standard output.
+// CUB on an NVIDIA GPU, as a separate program. It sorts the same input as cellist_bench, and prints
+// the times in the JSON of Google Benchmark.
 //
-//   sort_path        DeviceRadixSort of the records by their cell, over as many bits as cells have, then
-//                    bounds and one read of every list:
+//   sort_path        DeviceRadixSort of the records by their cell, over as many bits as cells have,
+//                    then bounds and one read of every list:
 //     cub_values     the records as values, 12 bytes
 //     cub_values_16  padded to 16 bytes
 //     cub_gather     indices as values, then the records gathered by them
@@ -11,9 +11,10 @@
 //     cub_values     with the rest of the record as value
 //     cub_gather     with indices as values, then the rests gathered by them
 //
-// Host time from the first launch until the device is done; the input lies in memory, temporary memory
-// is allocated before. Results are checked once a case, before it is timed. Cases that the device has no room
-// for are left out, and named on standard error. Those that fail are named in the JSON, and the exit status is 1.
+// Host time from the first launch until the device is done. The input is in memory, and temporary
+// memory is allocated before. The results of each case are checked once, before it is timed. Cases
+// that do not fit on the device are left out, and named on stderr. The JSON names those that fail,
+// and the exit status is then 1.
 
 #include <algorithm>
 #include <chrono>
@@ -66,7 +67,7 @@ struct Workload {
     std::uint32_t nodes;
 
     std::uint32_t cells() const { return bench_cells(nodes, occupancy); }
-    /// The same, halved until one thread can go through each list.
+    /// The same, halved until one thread can traverse each list.
     Workload readable() const {
         return {distribution, id, occupancy, bench_readable_nodes(nodes, occupancy, id)};
     }
@@ -117,7 +118,7 @@ __global__ void store_indices(std::uint32_t* indices, std::uint32_t count) {
     if (i < count) indices[i] = i;
 }
 
-/// What every list must come to, without a sort.
+/// The expected digest of every list, computed without a sort.
 __global__ void add_digests(std::uint32_t* digests, std::uint32_t count, std::uint32_t cell_count,
                             std::uint32_t distribution) {
     const std::uint32_t i = global_id();
@@ -125,7 +126,7 @@ __global__ void add_digests(std::uint32_t* digests, std::uint32_t count, std::ui
         atomicAdd(&digests[bench_cell(i, cell_count, distribution)], digest_of(record_of(i)));
 }
 
-/// Where each cell's items begin, in cells that are sorted; offsets has cell_count + 1 elements.
+/// Finds where each cell's items begin in sorted cells; offsets has cell_count + 1 elements.
 __global__ void find_bounds(const std::uint32_t* cells, std::uint32_t count,
                             std::uint32_t cell_count, std::uint32_t* offsets) {
     const std::uint32_t i = global_id();
@@ -199,8 +200,8 @@ public:
         std::fflush(stdout);
     }
 
-    /// Calls `measure`, which adds cases. What it throws is reported under this name: of a case, or of
-    /// several that have their setup in common.
+    /// Calls `measure`, which adds cases. Its exceptions are reported under this name: of a case,
+    /// or of several cases with a common setup.
     void attempt(const std::string& name, const std::function<void()>& measure) try {
         measure();
     } catch (const std::exception& error) {
@@ -255,7 +256,7 @@ void compare(const Buffer<std::uint32_t>& found, const Buffer<std::uint32_t>& ex
     if (a != b) throw std::runtime_error("the lists are wrong");
 }
 
-/// The input of a workload, and what comes of it.
+/// The input and the results of a workload.
 struct SortPath {
     explicit SortPath(const Workload& w)
         : workload(w),
@@ -288,7 +289,7 @@ struct SortPath {
     Buffer<std::uint32_t> input_cells, cells, offsets, digests, expected;
 };
 
-/// The size of CUB's temporary memory: what `sort` asks for when it gets none.
+/// The size of CUB's temporary memory, which `sort` returns if it gets none.
 template <class Sort>
 std::size_t temporary_bytes(const Sort& sort) {
     std::size_t bytes = 0;
@@ -346,7 +347,7 @@ void sort_indices(Report& report, const Sampling& sampling, const Workload& w) {
     });
 }
 
-/// Lists behind one another in the order of insertion: list c holds the records c, c + cells, ...
+/// Contiguous lists in the order of insertion: list c holds the records c, c + cells, ...
 __global__ void store_lists(std::uint32_t* keys, uint2* rests, std::uint32_t count,
                             std::uint32_t cell_count, std::uint32_t length) {
     const std::uint32_t at = global_id();
@@ -373,7 +374,7 @@ __global__ void gather_rests(const std::uint32_t* indices, const uint2* from, ui
     if (at < count) to[at] = from[indices[at]];
 }
 
-/// Sorts keys with values, and calls `finish` with the sorted values: after it the records are sorted.
+/// Sorts keys with values, and calls `finish` with the sorted values, which sorts the records.
 template <class Value, class Finish>
 void sort_segments(Report& report, const Sampling& sampling, const Workload& w, const char* peer,
                    const std::uint32_t* keys, const Value* values, const Finish& finish) {
@@ -397,7 +398,7 @@ void sort_segments(Report& report, const Sampling& sampling, const Workload& w, 
         host_seconds(work);
         CHECK(cudaMemset(unsorted.get(), 0, sizeof(std::uint32_t)));
         CHECK(cudaMemset(none.get(), 0, sizeof(std::uint32_t)));
-        // Where cells do not divide the nodes, the last few belong to no list.
+        // If the number of cells does not divide the nodes, the last few belong to no list.
         const std::uint32_t sorted = length * w.cells();
         count_unsorted<<<groups(sorted), group>>>(sorted_keys.get(), sorted, length,
                                                   unsorted.get());
@@ -421,11 +422,11 @@ void segmented_sort(Report& report, const Sampling& sampling, const Workload& w)
                   });
 }
 
-/// Whether there is room for keys of 4 bytes and values of 16, in and out, as much again for what CUB takes beside
-/// them, and three words for each cell.
+/// Whether there is room for keys of 4 bytes and values of 16, in and out, as much again for CUB's
+/// temporary memory, and three words for each cell.
 bool fits(const Workload& w) {
     std::size_t free = 0, total = 0;
-    // A device that cannot tell is broken: then the case fails, and is named.
+    // A device that cannot answer is broken: the case then fails with its name.
     if (cudaMemGetInfo(&free, &total) != cudaSuccess) return true;
     const bool room = std::size_t{w.nodes} * 80 + std::size_t{w.cells()} * 12 < free;
     if (!room) std::fprintf(stderr, "left out, for want of memory: %s\n", w.name().c_str());

@@ -1,7 +1,7 @@
 #pragma once
 
-// What the peers in plain C++ share. Each brings the records of a workload into per-cell lists that
-// lie behind one another, and reads each list once; `build` stands for the way it does that.
+// Shared by the peers in plain C++. Each peer puts the records of a workload into contiguous lists,
+// one for each cell, and reads each list once.
 
 #include <algorithm>
 #include <chrono>
@@ -24,7 +24,7 @@
 
 namespace bench::peers {
 
-/// A record with its cell: what is sorted where cells and records lie together.
+/// A record with its cell, for sorts that keep them together.
 struct Item {
     cl_uint cell;
     Record12 record;
@@ -36,8 +36,8 @@ struct Free {
 template <class T>
 using Array = std::unique_ptr<T[], Free>;
 
-/// `size` elements without a value, in large pages where the system has them: scattered stores to small
-/// ones spend much of their time on address translation.
+/// `size` elements without a value, in huge pages if the system has them. Scattered stores to small
+/// pages spend much of their time on address translation.
 template <class T>
 Array<T> uninitialized(std::size_t size) {
     constexpr std::size_t page_bytes = 2 << 20;
@@ -59,7 +59,7 @@ struct Lists {
     Array<Record12> records;
 };
 
-/// Calls work(part, begin, end) for equal parts of 0 ... size - 1, each on a thread of its own.
+/// Calls work(part, begin, end) for equal parts of 0 ... size - 1, each on its own thread.
 template <class Work>
 void in_parallel(unsigned threads, std::uint64_t size, const Work& work) {
     std::vector<std::jthread> others;
@@ -81,7 +81,7 @@ inline void read(const Lists& lists, std::vector<cl_uint>& digests, unsigned thr
     });
 }
 
-/// The same of items that are sorted by cell. They need no copy.
+/// The same for items that are sorted by cell. They need no copy.
 inline void read(const Item* items, const std::vector<cl_uint>& offsets,
                  std::vector<cl_uint>& digests, unsigned threads) {
     in_parallel(threads, digests.size(), [&](unsigned, std::uint64_t begin, std::uint64_t end) {
@@ -94,7 +94,7 @@ inline void read(const Item* items, const std::vector<cl_uint>& offsets,
     });
 }
 
-/// Where each cell's items begin, in items that are sorted by cell; offsets has cells + 1 elements.
+/// Finds where each cell's items begin in sorted items; offsets has cells + 1 elements.
 inline void find_bounds(const Item* items, std::size_t size, std::vector<cl_uint>& offsets,
                         unsigned threads) {
     in_parallel(threads, size + 1, [&](unsigned, std::uint64_t begin, std::uint64_t end) {
@@ -114,13 +114,13 @@ inline double seconds_since(std::chrono::steady_clock::time_point begin) {
 /// The items of a workload, in the order of insertion.
 Array<Item> items_of(const Workload& workload);
 
-/// Adds a case "sort_path/peer:<name>/..." for each workload that peers are compared on and that the machine
-/// has room for. `prepare(workload)` returns a function that makes the lists, reads them into the digests
-/// it is given, and returns the seconds that took.
+/// Adds a case "sort_path/peer:<name>/..." for each peer workload for which the machine has room.
+/// `prepare(workload)` returns a function. That function makes the lists, reads them into the
+/// digests of its argument, and returns the seconds that it took.
 template <class Prepare>
 void add_sort_path(Suite& suite, const std::string& name, const Prepare& prepare) {
     for (const Workload& workload : suite.readable_bases()) {
-        // Input, items and lists, and room to breathe.
+        // Input, items, lists and a reserve.
         const double items_bytes = double(workload.nodes) * sizeof(Item);
         if (!fits(suite.device().info(), items_bytes, 4 * items_bytes)) continue;
         suite.add("sort_path/peer:" + name + "/" + workload.name(), [=, &suite]() -> Result {

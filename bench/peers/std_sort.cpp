@@ -1,5 +1,5 @@
-// Plain C++: std::sort. All items by their cell on one thread, then bounds and one read; and every list
-// on its own, on all threads.
+// Plain C++: std::sort. One case sorts all items by their cell on one thread, with bounds and one
+// read. The other sorts every list separately, on all threads.
 
 #include "peers/peer.hpp"
 
@@ -9,10 +9,10 @@ using namespace peers;
 
 namespace {
 
-/// Sorts lists that have the same length each, by key.
+/// Sorts lists of one length by key.
 Result sort_lists(const Suite& suite, const Workload& workload) {
     const cl_uint length = workload.nodes / workload.cells();
-    // Lists behind one another, in the order of insertion; and a copy to sort.
+    // Contiguous lists, in the order of insertion, and a copy to sort.
     const Array<Record12> unsorted = uninitialized<Record12>(workload.nodes);
     for (cl_uint cell = 0; cell < workload.cells(); ++cell)
         for (cl_uint i = 0; i < length; ++i)

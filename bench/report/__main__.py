@@ -1,14 +1,14 @@
 """Results, tables and plots of the benchmarks; scripts/bench calls it.
 
   merge --effort E --git HASH [--note TEXT] --out RESULTS.json OUTPUT.json...
-                              results from the programs' output
+                              collects the output of the programs as results
   merge-oit [--note TEXT] --out RESULTS.json FRAMES.json [GRID.json]
-                              the same of cellist-oit-frames and cellist-budget-grid
-  ratios RESULTS.json         the table of ratios
-  goals RESULTS.json          the table of what is asked of transparency
-  plots RESULTS.json DIRECTORY    plots, as SVG
-  documents [--check]         tables and plots in the documentation from bench/results; --check changes
-                              nothing, and exits with 1 where they do not agree
+                              the same for cellist-oit-frames and cellist-budget-grid
+  ratios RESULTS.json         prints the table of ratios
+  goals RESULTS.json          prints the goals of transparency
+  plots RESULTS.json DIRECTORY    writes the plots as SVG
+  documents [--check]         writes the tables and plots of the documentation from bench/results;
+                              --check writes nothing, and exits with 1 if they differ
 """
 
 import argparse
@@ -61,7 +61,7 @@ def _documents(options):
         return
     outdated = documents.outdated()
     if outdated:
-        sys.exit(f"not as bench/results says: {', '.join(outdated)}; run scripts/bench --documents")
+        sys.exit(f"differs from bench/results: {', '.join(outdated)}; run scripts/bench --documents")
 
 
 def main():

@@ -23,7 +23,7 @@ PLOT_TITLES = {
 
 
 def _plots_of(results):
-    """The plots of a run by file name. Only a full one has all sizes; plots of others would show points."""
+    """The plots of a run by file name. Only a full run has all sizes to plot."""
     if results["effort"] != "full":
         return {}
     return {f"bench-{results['file']}-{plot}.svg": (plot, svg) for plot, svg in plots.draw(results).items()}
@@ -46,13 +46,13 @@ _BLOCK = re.compile(r"(<!-- results: (\w+) -->\n)(.*?)(<!-- end of results -->)"
 
 
 def _runs(paths):
-    """What was measured on GPUs comes first."""
+    """The runs, those on GPUs first."""
     runs = [{**figures.load(path), "file": path.stem} for path in sorted(paths)]
     return sorted(runs, key=lambda results: results["kind"] != "gpu")
 
 
 def _contents():
-    """What each generated file should hold, by path."""
+    """The expected content of each generated file, by path."""
     paths = set((ROOT / "bench/results").glob("*.json"))
     oit_paths = {path for path in paths if path.stem.startswith("oit-")}
     runs, oit_runs = _runs(paths - oit_paths), _runs(oit_paths)
@@ -77,6 +77,6 @@ def write():
 
 
 def outdated():
-    """The files that do not agree with the results."""
+    """The files that differ from the results."""
     return [str(path.relative_to(ROOT)) for path, text in _contents().items()
             if not path.exists() or path.read_text(encoding="utf-8") != text]

@@ -1,12 +1,12 @@
 """Results of the benchmarks: a dictionary that is stored as JSON.
 
   device, driver, platform, kind ("gpu" or "cpu"), threads, cuda_driver, cub
-  git          the commit that was measured
+  git          the measured commit
   effort       tiny, quick or full
-  note         what a reader has to know of the run, where there is something
-  nodes, occupancy    of the workload that ratios are taken of
+  note         a remark for readers, if there is one
+  nodes, occupancy    of the workload of the ratios
   figures      one for each case: {name, <labels of the case>, time_ms, least_ms, greatest_ms, samples, ...}
-  failed       cases that have no figures because they failed, where there are some: {name, message}
+  failed       cases that failed and so have no figures, if there are any: {name, message}
   ratios       see ratios.py
 """
 
@@ -69,12 +69,12 @@ def merge(documents, effort, git, note=""):
 
 
 def _workload(figure):
-    """What a copy of all nodes depends on."""
+    """The values that determine the time of a copy of all nodes."""
     return tuple(figure.get(key) for key in ("node_bytes", "occupancy", "nodes"))
 
 
 def select(figures, name, **labels):
-    """The figures of this name with these labels; None stands for a label that is not there."""
+    """The figures of this name with these labels; None means that the label is missing."""
     return [f for f in figures if f["name"] == name and all(f.get(k) == v for k, v in labels.items())]
 
 

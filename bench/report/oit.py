@@ -1,27 +1,27 @@
 """Results of the benchmarks of transparency: a dictionary that is stored as JSON.
 
   device, driver, platform, kind ("gpu" or "cpu"), threads
-  git            the commit that was measured
-  size           factor of the sides of the images of all sections but budget_grid; 1 in a full run
-  note           what a reader has to know of the run, where there is something
+  git            the measured commit
+  size           factor for the sides of all images except those of budget_grid; 1 in a full run
+  note           a remark for readers, if there is one
   frame_times, exact_methods, fewer_layers, plain_cpp, accuracy
-                 sections of cellist-oit-frames: a list of figures each, {case, width, height, ...}
-                 in frame_times, two_at_once has the times from one image to the next where two
-                 frames are drawn at once
+                 sections of cellist-oit-frames: lists of figures, {case, width, height, ...}
+                 in frame_times, two_at_once has the times from one image to the next if two
+                 frames draw at once
   budget_grid    the cases of cellist-budget-grid
-  left_out       what is not in these sections: {what, reason}
+  left_out       cases that these sections lack: {what, reason}
 """
 
 SECTIONS = ("frame_times", "exact_methods", "fewer_layers", "plain_cpp", "accuracy", "budget_grid", "left_out")
 
-# Frames a second that are asked for.
+# The goals in frames a second.
 FRAMES_PER_SECOND = {
     "teapot": {"gpu": 20000, "cpu": 60},
     "dragon": {"gpu": 10000, "cpu": 25},
     "dragon, 4 samples": {"gpu": 5000, "cpu": 8},
     "gearworks, 64 layers": {"gpu": 2500, "cpu": 3},
 }
-# How many times as long plain C++ takes.
+# The goal for the speed relative to plain C++.
 TIMES_PLAIN_CPP = {"teapot": {"cpu": 2.5}, "dragon": {"cpu": 2.5}}
 # Part of the pixels of a picture within 1/255 of the reference.
 PIXELS_WITHIN = 0.9999
@@ -57,7 +57,7 @@ def cases(section, all_results):
 
 
 def three_digits(value):
-    """As people read it: 0.215, 21.5, 2,150."""
+    """A number with three digits: 0.215, 21.5, 2,150."""
     return f"{value:,.0f}" if value >= 100 else f"{value:.3g}"
 
 
@@ -75,13 +75,13 @@ def part_within(figure):
 
 
 def unexplained(figure):
-    """Pixels beyond 1/255 although float tells the order of their layers and opaque surfaces."""
+    """Pixels beyond 1/255 in which float tells the order of layers and opaque surfaces."""
     return figure["pixels_over"] - figure["pixels_explained"]
 
 
 def causes(figure):
-    """Of the pixels beyond 1/255, how many there are of each cause: close layers, whose order was proven to be
-    it, and what else is close, such as opaque surfaces."""
+    """Counts the pixels beyond 1/255 by cause: close layers, whose order was proven to be the
+    cause, and other close depths, such as those of opaque surfaces."""
     order = figure["pixels_of_another_order"]
     return {"order of layers": order, "other close depths": figure["pixels_explained"] - order,
             "unexplained": unexplained(figure)}
@@ -98,8 +98,8 @@ def _at_least(name, case, text, value, goal):
 
 
 def goals(results):
-    """What was measured beside what is asked for: {name, case, measured, value, asked, met}; the last two
-    are None where nothing is asked for on this kind of device."""
+    """The measurements with their goals: {name, case, measured, value, asked, met}. The last two
+    are None if this kind of device has no goal."""
     kind = results["kind"]
     rows = []
     for figure in figures(results, "frame_times"):

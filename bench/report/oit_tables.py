@@ -1,4 +1,5 @@
-"""Tables of transparency: as text for people who run the benchmarks, and as Markdown for documents."""
+"""Tables of transparency: as text for people who run the benchmarks, and as Markdown for
+documents."""
 
 import oit
 from tables import device_title
@@ -8,9 +9,9 @@ _CASE_TITLES = {"dragon, 4 samples": "dragon, 4 samples a pixel"}
 
 
 def goals_as_text(results):
-    """What was measured beside what is asked for; what misses it is marked."""
+    """The measurements with their goals; missed goals are marked."""
     goals = oit.goals(results)
-    rows = [("section", "case", "measured", "asked", "")]
+    rows = [("section", "case", "measured", "goal", "")]
     rows += [(goal["name"], goal["case"], goal["measured"], goal["asked"] or "", _MARKS[goal["met"]])
              for goal in goals]
     widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
@@ -43,13 +44,13 @@ def _rate(times):
 
 
 def conditions(all_results):
-    """The runs that all other tables are of."""
+    """The runs of all other tables."""
     return _table(["device", "driver", "commit", "note"],
                   [[device_title(r), r["driver"], r["git"], r.get("note", "")] for r in all_results])
 
 
 def frame_times(all_results):
-    head = ["frames a second", "asked of a GPU", "asked of PoCL"]
+    head = ["frames a second", "goal on a GPU", "goal under PoCL"]
     for results in all_results:
         head += [device_title(results), "two at once"]
     rows = []
@@ -132,7 +133,7 @@ def _pixels_over(figure):
 
 
 def budget_grid(all_results):
-    """How often --budget was right, and what it cost."""
+    """How often --budget was right, and the cost of its choices."""
     rows = []
     for results in all_results:
         grid = oit.figures(results, "budget_grid")

@@ -30,8 +30,8 @@ def _document(width, height, parts):
 
 
 class _Panel:
-    """Lines over a number, such as that of nodes. `lines` is a list of (title, points, dashed); a point is
-    (number, value), or (number, value, least, greatest) where the spread is shown."""
+    """Lines over a number, such as the number of nodes. `lines` is a list of (title, points,
+    dashed). A point is (number, value), or (number, value, least, greatest) to show the spread."""
 
     WIDTH, HEIGHT = 380, 260
     LEFT, TOP = 60, 60
@@ -132,7 +132,7 @@ def of_ceiling(results):
 
 
 def crossover(results):
-    """Which storage takes least for a build and a number of reads, and how much less than the next."""
+    """The fastest storage for a build and a number of reads, and its lead over the next."""
     grid = {(figure["distribution"], figure["occupancy"], figure["nodes"]): figure
             for figure in select(results["figures"], "storage")}
     width, height, left, top = 84, 22, 240, 88
@@ -160,7 +160,7 @@ def crossover(results):
 
 
 def fewer_layers(all_results):
-    """The nearest layers of gearworks against all: a line for each run of the benchmarks of transparency."""
+    """The nearest layers of gearworks against all layers: a line for each run."""
     def panel(x, title, unit, member):
         lines = [(device_title(results),
                   [(figure["layers"], figure[member]) for figure in results.get("fewer_layers", [])
@@ -175,7 +175,7 @@ def fewer_layers(all_results):
 
 
 def draw(results):
-    """The plots by name; those that the run has figures for."""
+    """The plots by name, if the run has their figures."""
     drawn = {"throughput": throughput(results), "ceiling": of_ceiling(results)}
     if select(results["figures"], "storage"):
         drawn["crossover"] = crossover(results)

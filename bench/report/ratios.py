@@ -1,8 +1,8 @@
-"""The ratios that the library is judged by, with their goals, from the figures of one run.
+"""The ratios that judge the library, with their goals, from the figures of one run.
 
-A ratio is {name, case, value, goal, better, ours, theirs}: `better` is "higher" or "lower", `ours` and
-`theirs` say what was compared. A value is None where it was not measured, a goal where there is none
-for this kind of device.
+A ratio is {name, case, value, goal, better, ours, theirs}. `better` is "higher" or "lower". `ours`
+and `theirs` describe what was compared. A value is None if it was not measured. A goal is None if
+this kind of device has none.
 """
 
 from figures import fastest, power_of_two, select
@@ -10,7 +10,7 @@ from figures import fastest, power_of_two, select
 LENGTHS = (8, 16, 32, 64)
 DISTRIBUTIONS = ("random", "coherent", "runs", "skewed", "hot")
 
-# name -> (case or None for all, {kind of device: goal}), from the most special case on.
+# name -> (case or None for all, {kind of device: goal}); the most special case comes first.
 GOALS = {
     "insert_vs_ceiling": [("random", {"gpu": 0.95, "cpu": 0.75}), ("coherent", {"gpu": 0.92, "cpu": 0.75})],
     "insert_vs_ceiling_runs": [(None, {"gpu": 2.0, "cpu": 0.75})],
@@ -30,7 +30,7 @@ LOWER_IS_BETTER = ("auto_vs_best", "small_build_us")
 
 
 def met(ratio):
-    """Whether a ratio reaches its goal; None where one of the two is missing."""
+    """Whether a ratio reaches its goal; None if one of the two is missing."""
     if ratio["value"] is None or ratio["goal"] is None:
         return None
     if ratio["better"] == "lower":
@@ -39,15 +39,16 @@ def met(ratio):
 
 
 def storage_times(figure, reads):
-    """Milliseconds of a build and so many reads by storage, of a figure that compares storages."""
+    """Milliseconds of a build and this number of reads by storage, from a figure that compares
+    them."""
     ending = "_build_ms"
     storages = [key[:-len(ending)] for key in figure if key.endswith(ending)]
     return {s: figure[f"{s}_build_ms"] + reads * figure[f"{s}_read_ms"] for s in storages}
 
 
 def is_choice(figure, storage):
-    """Whether the library may choose a storage: none of its own that takes more than four slots for each
-    record, or 65,536 in all, as docs/storages.md says."""
+    """Whether Storage::automatic may choose a storage. `fixed` may take four slots for each record,
+    or 65,536 in all (docs/storages.md)."""
     if storage.startswith("automatic"):
         return False
     slots = figure[f"{storage}_nodes_a_record"]
@@ -62,7 +63,7 @@ def _goal(name, case, kind):
 
 
 def _described(figure):
-    """What was measured, with its median, least and greatest time."""
+    """A measurement with its median, least and greatest time."""
     what = [str(figure[key]) for key in ("peer", "storage", "allocation", "input") if key in figure]
     return (f"{' '.join(what) or figure['name']} {figure['time_ms']:.4g} ms "
             f"({figure['least_ms']:.3g} to {figure['greatest_ms']:.3g})")
@@ -95,7 +96,7 @@ class _Run:
         })
 
     def compare(self, name, case, ours, theirs, has_goal=True):
-        """Adds their time by ours."""
+        """Adds the ratio of their time to ours."""
         if ours and theirs:
             self.add(name, case, theirs["time_ms"] / ours["time_ms"], _described(ours),
                      _described(theirs), has_goal)
@@ -111,16 +112,17 @@ class _Run:
             self.add(name, distribution, None)
 
     def in_order(self, name, distribution):
-        """Against the same stores and exchange in the order that an insert keeps."""
+        """Against the same stores and exchange in the order of an insert."""
         insert = self.insert(distribution)
         if insert and "of_in_order" in insert:
             self.add(name, f"{distribution}, in an insert's order", insert["of_in_order"], _described(insert),
                      f"store, exchange, link {insert['in_order_ms']:.4g} ms", has_goal=False)
 
     def build_read(self, name, peers):
-        """Against the best of the peers: with what a kernel computes, where the peers' input lies in
-        memory already or is computed, whichever is faster; and with all input in memory. Distributions with
-        long lists have fewer records, so that each can be read by one work-item."""
+        """Against the best of the peers, in two ways. First cellist's kernel computes its input,
+        and peers compute theirs or find it in memory, whichever is faster. Then all input is in
+        memory. Distributions with long lists have fewer records, so that one work-item can read
+        each list."""
         for distribution in DISTRIBUTIONS:
             found = select(self.figures, "build_read", distribution=distribution)
             nodes = found[0]["nodes"] if found else self.nodes
@@ -133,8 +135,8 @@ class _Run:
             self.compare(name, f"{case}, input in memory", fastest(ours), fastest(theirs), has_goal=False)
 
     def automatic(self):
-        """The storage that the library chose against the best one, in the worst case of the grid: 25
-        workloads by two numbers of reads that it was told to expect."""
+        """Storage::automatic against the best storage, in the worst case of the grid: 25 workloads
+        by two numbers of expected reads."""
         worst = None
         for figure in select(self.figures, "storage"):
             for reads in (1, 8):
@@ -142,7 +144,7 @@ class _Run:
                 times = storage_times(figure, reads)
                 if automatic not in times:
                     continue
-                # Ratios within a round, where there are any: see bench/storage.cpp.
+                # Ratios within a round, if there are any: see bench/storage.cpp.
                 ratio = {s: figure.get(f"{automatic}_to_{s}", times[automatic] / times[s])
                          for s in times if is_choice(figure, s)}
                 best = max(ratio, key=ratio.get)

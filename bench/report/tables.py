@@ -7,7 +7,7 @@ from ratios import GOALS, LENGTHS, met
 
 
 def device_title(results):
-    """How documents name the device of a run."""
+    """The name of a run's device in documents."""
     if results["kind"] == "gpu":
         return results["device"]
     processor = re.sub(r"^[a-z0-9_-]+-(?=[A-Z])", "", results["device"])
@@ -31,8 +31,8 @@ _MARKS = {True: "met", False: "MISSED", None: ""}
 
 
 def ratios_as_text(results):
-    """The table of ratios; what misses its goal is marked. Times are medians; those of cases of their own have the
-    least and the greatest behind them."""
+    """The table of ratios; missed goals are marked. Times are medians. Those of separate cases are
+    followed by the least and the greatest."""
     rows = [("ratio", "case", "value", "goal", "", "ours", "theirs")]
     for ratio in results["ratios"]:
         rows.append((ratio["name"], ratio["case"], _value(ratio["value"]), _goal(ratio), _MARKS[met(ratio)],
@@ -50,7 +50,7 @@ def ratios_as_text(results):
 
 
 def ratios_as_markdown(all_results):
-    """The ratios of several runs beside one another, with their goals."""
+    """The ratios of several runs side by side, with their goals."""
     cases = []
     for results in all_results:
         for ratio in results["ratios"]:
@@ -78,7 +78,7 @@ def ratios_as_markdown(all_results):
 
 
 def conditions_as_markdown(all_results):
-    """What was measured on what."""
+    """The conditions of the runs."""
     lines = ["| device | driver | effort | nodes, cells | peers | commit | note |", "|---|---|---|---|---|---|---|"]
     for results in all_results:
         peers = sorted({f["peer"] for f in results["figures"] if f["name"] == "sort_path"})
@@ -100,7 +100,7 @@ TITLES = (("random", "random cells"), ("coherent", "neighbours hit neighbouring 
 
 
 def summary_as_markdown(all_results):
-    """The README's table: inserts, and what whole tasks take against the peers."""
+    """The README's table: inserts, and whole tasks against the peers."""
     rows = []
 
     def add(title, cell):
@@ -120,7 +120,7 @@ def summary_as_markdown(all_results):
 
     for distribution, title in TITLES:
         add(f"insert, {title}", insert(distribution))
-    add("insert, random, as in the papers: one counter for all, every work-item alone", insert("random", "global"))
+    add("insert, random cells, with one counter for all nodes, as in the papers", insert("random", "global"))
     for name, against in (("build_read_vs_sort", "radix or merge sort by cell on the same device"),
                           ("build_read_vs_cpp", "the best C++ on the same cores")):
         for distribution, title in TITLES[:3]:
@@ -134,7 +134,7 @@ def summary_as_markdown(all_results):
 
 
 def times_as_markdown(all_results):
-    """Ceilings and operations on random cells: time, rate, and part of the rate of a copy."""
+    """Ceilings and operations on random cells: time, rate, and the rate relative to a copy."""
     lines = ["| random cells | " + " | ".join(device_title(r) for r in all_results) + " |",
              "|---|" + "---|" * len(all_results)]
 

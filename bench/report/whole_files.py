@@ -6,7 +6,8 @@ import tempfile
 
 
 def write_text(path, text):
-    """Replaces a file once all is on the disk; an old one stays where that fails. A device is written directly."""
+    """Replaces a file when all of it is on the disk. After a failure, an old file stays. A device
+    is written directly."""
     path = pathlib.Path(os.path.realpath(path))
     if path.exists() and not path.is_file():
         path.write_text(text, encoding="utf-8")

@@ -31,13 +31,13 @@ cellist::Source source_of(std::string_view kernels, const std::string& file_name
 /// Whether the kernel computes what it inserts, or reads it from arrays.
 enum class Input { generated, stored };
 
-/// Containers of one workload, to be used by turns. They are filled and checked once; where a list is too long for one
-/// work-item to go through, fewer records of the same workload are checked in its place.
+/// Containers of one workload, used in turn. They are filled and checked once. If a list is too
+/// long for one work-item, fewer records of the same workload are checked instead.
 template <class Record>
 class Containers {
 public:
-    /// `by_turns` of these are used by turns, and fill the caches together. Throws std::runtime_error
-    /// where the lists are wrong.
+    /// `by_turns` of these are used in turn, and together fill the caches. Throws
+    /// std::runtime_error if the lists are wrong.
     Containers(const Suite& suite, const Workload& workload, const Keeping& keeping,
                Input input = Input::generated, std::size_t by_turns = 1)
         : workload_(workload), options_(options_for(workload, keeping)) {
@@ -68,12 +68,12 @@ public:
         return lists_[turn_];
     }
 
-    /// Fills the lists anew. Blocks.
+    /// Fills the lists again. Blocks.
     cellist::BuildReport build(cellist::Lists<Record>& lists) {
         return lists.build([&] { run_insert(lists); });
     }
 
-    /// Fills the lists anew. Returns what the device took for each run of the inserting kernel.
+    /// Fills the lists again. Returns the device time of each run of the inserting kernel.
     [[nodiscard]] std::vector<double> insert_seconds(cellist::Lists<Record>& lists) {
         std::vector<cl::Event> events;
         lists.build([&] { events.push_back(run_insert(lists)); });
@@ -98,7 +98,7 @@ private:
                             workload_.distribution.id, workload_.nodes);
     }
 
-    /// The first build, and in Storage::automatic those of its trial: twelve at most.
+    /// Makes the first build; in Storage::automatic, all builds of its trial, at most twelve.
     cellist::BuildReport settle(cellist::Lists<Record>& lists) {
         const bool automatic = options_.storage == cellist::Storage::automatic;
         for (int i = 0; automatic && i < 12; ++i) build(lists);
@@ -134,8 +134,8 @@ private:
     std::size_t turn_ = 0;
 };
 
-/// Adds a case for each workload and keeping that fit the device: `measure` is called with the record
-/// as its template argument, as measure.operator()<Record>(suite, workload, keeping).
+/// Adds a case for each workload and keeping that fit the device. Calls
+/// measure.operator()<Record>(suite, workload, keeping).
 template <class Measure>
 void add_cases(Suite& suite, const std::string& name, const std::vector<Workload>& workloads,
                const std::vector<Keeping>& keepings, const Measure& measure) {

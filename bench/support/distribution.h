@@ -1,7 +1,7 @@
-// Which cell the i-th insert goes to, and which words it inserts. Compiled as OpenCL C, C++ and
-// CUDA, so that every device and every peer works on the same input.
+// The cell and the words of the i-th insert. Compiled as OpenCL C, C++ and CUDA, so that every
+// device and every peer has the same input.
 //
-// The number of cells is a power of two: a division would take longer than what is measured.
+// The number of cells is a power of two. A division would take longer than the measured operation.
 #ifndef CELLIST_BENCH_DISTRIBUTION_H
 #define CELLIST_BENCH_DISTRIBUTION_H
 
@@ -66,31 +66,32 @@ BENCH_FUNCTION bench_uint bench_cell(bench_uint i, bench_uint cells, bench_uint 
     }
 }
 
-// The j-th word of the i-th record. Word 0 is the key that lists are sorted by: no two are equal. Where
-// cells are random it costs nothing, being the hash that they are taken from.
+// The j-th word of the i-th record. Word 0 is the sort key; no two are equal. In random cells it
+// costs nothing, because the cell comes from the same hash.
 BENCH_FUNCTION bench_uint bench_word(bench_uint i, bench_uint j) {
     return j == 0u ? bench_hash(i) : i * (2u * j + 1u);
 }
 
-// What the j-th word of a record adds to the digest of its list.
+// The contribution of a record's j-th word to the digest of its list.
 BENCH_FUNCTION bench_uint bench_digest_word(bench_uint word, bench_uint j) {
     return word * (2u * j + 1u);
 }
 
-// What follows is for hosts.
+// The rest is for hosts.
 #ifndef __OPENCL_VERSION__
 
-// nodes / occupancy, rounded down to a power of two; 1 at least.
+// nodes / occupancy, rounded down to a power of two, and at least 1.
 inline bench_uint bench_cells(bench_uint nodes, bench_uint occupancy) {
     bench_uint cells = 1;
     while (cells <= nodes / occupancy / 2) cells *= 2;
     return cells;
 }
 
-// About how long the longest list is; an upper bound in all but rare cases.
+// The approximate length of the longest list; an upper bound in all but rare cases.
 inline double bench_longest(bench_uint nodes, bench_uint cells, bench_uint distribution) {
     const double mean = static_cast<double>(nodes) / cells;
-    // Five standard deviations over the mean of a Poisson distribution, and a bit for small means.
+    // Five standard deviations over the mean of a Poisson distribution, with a margin for small
+    // means.
     const auto tail = [](double expected) { return expected + 5 * sqrt(expected) + 5; };
     switch (distribution) {
         case BENCH_COHERENT:
@@ -106,10 +107,10 @@ inline double bench_longest(bench_uint nodes, bench_uint cells, bench_uint distr
     }
 }
 
-// The longest list that one work-item, or thread, goes through in a benchmark.
+// The longest list that one work-item or thread traverses in a benchmark.
 #define BENCH_READABLE_NODES 32768.0
 
-// The number of nodes, halved until one work-item can go through each list.
+// The number of nodes, halved until one work-item can traverse each list.
 inline bench_uint bench_readable_nodes(bench_uint nodes, bench_uint occupancy,
                                        bench_uint distribution) {
     while (bench_longest(nodes, bench_cells(nodes, occupancy), distribution) > BENCH_READABLE_NODES)

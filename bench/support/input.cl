@@ -1,5 +1,5 @@
-// Writes what a workload inserts to arrays, one work-item a record: `cells` and `records` hold one
-// element for each work-item.
+// Writes the cells and records of a workload to arrays. `cells` and `records` have one element for
+// each work-item.
 
 kernel void store_input(global uint* cells, global RECORD* records, uint cell_count,
                         uint distribution) {

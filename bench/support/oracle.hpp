@@ -6,7 +6,7 @@
 
 namespace bench {
 
-/// What the lists of a workload hold, from plain C++.
+/// The expected content of a workload's lists, from plain C++.
 struct Expected {
     std::vector<cl_uint> digests;  ///< of each cell: see support/record.clh
     cl_uint longest = 0;           ///< nodes of the longest list
@@ -15,11 +15,10 @@ struct Expected {
 /// Computed once for each workload.
 [[nodiscard]] const Expected& expected(const Workload& workload);
 
-/// For each cell the sum of the digests of the `k` records with the least keys. Computed once, too.
+/// For each cell, the sum of the digests of the `k` records with the least keys. Computed once.
 [[nodiscard]] const std::vector<cl_uint>& expected_nearest(const Workload& workload, cl_uint k);
 
-/// Throws std::runtime_error, naming the first cell that differs, unless the digests are the
-/// expected ones.
+/// Throws std::runtime_error, with the first cell that differs, unless the digests are as expected.
 void check_digests(const std::vector<cl_uint>& digests, const std::vector<cl_uint>& expected);
 
 }  // namespace bench

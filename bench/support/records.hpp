@@ -12,8 +12,8 @@
 
 namespace bench {
 
-/// The records of the benchmarks, named by their bytes. A node of a linked list has a link of 4 bytes
-/// more.
+/// The records of the benchmarks, named by their size in bytes. A node of a linked list also has a
+/// link of 4 bytes.
 struct Record4 {
     cl_uint key;
 };

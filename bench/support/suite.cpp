@@ -11,7 +11,7 @@
 namespace bench {
 namespace {
 
-/// Prints to the screen, and keeps the same as JSON.
+/// Prints results to the terminal, and keeps them as JSON.
 class Reporters : public benchmark::BenchmarkReporter {
 public:
     Reporters() {

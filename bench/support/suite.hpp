@@ -20,7 +20,7 @@ enum class Effort {
     full,   ///< all workloads
 };
 
-/// What a case came to. Its time is the median.
+/// The result of a case. Its time is the median.
 struct Result {
     Samples samples;
     double nodes = 0;  ///< that were processed
@@ -28,8 +28,8 @@ struct Result {
     std::map<std::string, double> counters = {};
 };
 
-/// The device, what to measure on it, and the cases that were added. Each file of benchmarks adds its
-/// own; Google Benchmark runs and reports them.
+/// The device, the effort, and the cases. Each file of benchmarks adds its cases. Google Benchmark
+/// runs and reports them.
 class Suite {
 public:
     Suite(const cellist::Device& device, Effort effort, cl_uint nodes, cl_uint occupancy,
@@ -41,28 +41,28 @@ public:
     [[nodiscard]] unsigned threads() const { return threads_; }
     [[nodiscard]] const Sampling& sampling() const { return sampling_; }
 
-    /// How many copies of something to use by turns, so that caches do not hold all of them: together
-    /// they take 128 MiB, unless these are over 256 copies.
+    /// The number of copies to use in turn, so that caches do not hold all of them. Together they
+    /// take 128 MiB, but there are at most 256.
     [[nodiscard]] std::uint64_t copies(std::uint64_t bytes) const;
 
-    /// The workload that the ratios are taken of.
+    /// The workload of the ratios.
     [[nodiscard]] Workload base(const Distribution& distribution) const;
-    /// The base of each distribution, halved until one work-item can go through each list: what peers are
-    /// compared on.
+    /// The base workload with each distribution, for comparison with peers. It is halved until one
+    /// work-item can traverse each list.
     [[nodiscard]] std::vector<Workload> readable_bases() const;
-    /// The base with each distribution; under full effort also with each size from 2^12 to 2^26, and,
-    /// of random and coherent cells, with each size of a node and several occupancies.
+    /// The base workload with each distribution. Full effort adds each size from 2^12 to 2^26. For
+    /// random and coherent cells, it also adds each node size and several occupancies.
     [[nodiscard]] std::vector<Workload> workloads() const;
-    /// Those in which no list is longer than this, up to four times the base: for what walks lists, which
-    /// takes long at the largest sizes on a processor.
+    /// The workloads of up to four times the base without a longer list. They are for traversals,
+    /// which are slow at the largest sizes on a processor.
     [[nodiscard]] std::vector<Workload> workloads(double longest) const;
 
-    /// Adds a case. `measure` sets up, checks the results once, and measures; what it throws makes the
-    /// case fail. Cases that were added before under the same name are left out.
+    /// Adds a case. `measure` sets up, checks the results once, and measures. If it throws, the
+    /// case fails. A second case of the same name is left out.
     void add(const std::string& name, std::function<Result()> measure);
 
     /// Runs the cases that Google Benchmark's options select, and writes the results as JSON unless
-    /// `out` is empty. True if all went well. Throws as support::write_file() does.
+    /// `out` is empty. Returns whether all succeeded. Throws as support::write_file() does.
     [[nodiscard]] bool run(const std::filesystem::path& out);
 
 private:

@@ -17,24 +17,24 @@ struct Samples {
 };
 [[nodiscard]] Samples summary(std::vector<double> seconds);
 
-/// How often a case is run: at least `least` times, then until `seconds` have passed, preparations
-/// included, or it was run `most` times.
+/// How often a case runs: at least `least` times, and then until `seconds` have passed, with
+/// preparations, or it has run `most` times.
 struct Sampling {
     std::size_t least = 7;
     std::size_t most = 101;
     double seconds = 0.3;
 };
 
-/// Calls `run` as often as `sampling` says. Each call returns the time of one run, one value for each
-/// of the things that are measured by turns.
+/// Calls `run` as often as `sampling` says. Each call returns the times of one run, one for each of
+/// the interleaved measurements.
 [[nodiscard]] std::vector<Samples> sample(const Sampling& sampling,
                                           const std::function<std::vector<double>()>& run);
 [[nodiscard]] Samples sample(const Sampling& sampling, const std::function<double()>& run);
 
-/// What the device took for one command. Waits for it.
+/// The device time of one command. Waits for it.
 [[nodiscard]] double device_seconds(const cl::Event& event);
 
-/// What passes on the host until `work` is done on the device, launches and all.
+/// The host time until the device has done `work`, with launches.
 template <class Work>
 double host_seconds(const cellist::Device& device, const Work& work) {
     device.finish();

@@ -63,7 +63,7 @@ bool fits(const cellist::DeviceInfo& device, const Workload& workload, const Kee
     if (keeping.options.storage == cellist::Storage::counted) pool_bytes = record_bytes * nodes;
     if (keeping.options.storage == cellist::Storage::fixed)
         pool_bytes = record_bytes * cells * workload.longest();
-    // Beside the pool: heads, what the ceiling or a packed copy takes, and room to breathe.
+    // Beside the pool: heads, memory for the ceiling or a packed copy, and a reserve.
     return fits(device, pool_bytes, 3 * pool_bytes + 16 * cells);
 }
 

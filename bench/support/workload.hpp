@@ -26,7 +26,7 @@ inline constexpr Distribution runs = distributions[2];
 inline constexpr Distribution skewed = distributions[3];
 inline constexpr Distribution hot = distributions[4];
 
-/// What is inserted where: `nodes` records into nodes / occupancy cells, which is a power of two.
+/// A workload: `nodes` records in nodes / occupancy cells, which is a power of two.
 struct Workload {
     Distribution distribution = random;
     cl_uint node_bytes = 16;  ///< record and link
@@ -35,16 +35,16 @@ struct Workload {
 
     [[nodiscard]] cl_uint cells() const;
     [[nodiscard]] cl_uint words() const { return node_bytes / 4 - 1; }  ///< of a record
-    /// About how long the longest list is; an upper bound in all but rare cases.
+    /// The approximate length of the longest list; an upper bound in all but rare cases.
     [[nodiscard]] double longest() const;
-    /// As benchmarks are named: "distribution:random/node_bytes:16/...".
+    /// The name in benchmarks: "distribution:random/node_bytes:16/...".
     [[nodiscard]] std::string name() const;
 };
 
-/// The same, halved until one work-item can go through each list.
+/// The same, halved until one work-item can traverse each list.
 [[nodiscard]] Workload readable(Workload workload);
 
-/// Those whose cells are random or coherent: the extremes of what memory makes of a workload.
+/// The workloads with random or coherent cells: the extremes for memory.
 [[nodiscard]] std::vector<Workload> random_and_coherent(std::vector<Workload> workloads);
 
 /// How lists are kept.
@@ -59,17 +59,16 @@ struct Keeping {
 
 /// The storages, each with its default options.
 [[nodiscard]] const std::vector<Keeping>& storages();
-/// The storage that the library chooses itself, as automatic_1 and automatic_8 where it is told to expect
-/// one read or eight.
+/// Storage::automatic, as automatic_1 and automatic_8 if it expects one read or eight.
 [[nodiscard]] const std::vector<Keeping>& automatic_storages();
 /// Linked lists with the library's sharded counters, and with the one counter of the papers.
 [[nodiscard]] const std::vector<Keeping>& allocations();
 
-/// Whether a device of this size has room for a container of a workload, and what is measured with it.
+/// Whether a device of this size has room for a container of a workload and its measurement.
 [[nodiscard]] bool fits(const cellist::DeviceInfo& device, const Workload& workload,
                         const Keeping& keeping);
 
-/// The same of arrays, the largest of which takes so many bytes, and all together so many.
+/// The same for arrays, by the bytes of the largest and of all together.
 [[nodiscard]] bool fits(const cellist::DeviceInfo& device, double largest_bytes, double all_bytes);
 
 }  // namespace bench

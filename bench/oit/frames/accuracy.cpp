@@ -1,4 +1,4 @@
-// All layers in nodes of floats against the reference in double precision, on every scene.
+// All layers in float nodes against the reference in double precision, for every scene.
 
 #include <cmath>
 

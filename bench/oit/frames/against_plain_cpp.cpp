@@ -1,5 +1,5 @@
-// Linked lists on the device against plain C++ on one thread. Its picture is compared with the reference
-// before it is timed.
+// Linked lists on the device against plain C++ on one thread. The picture of plain C++ is compared
+// with the reference before the measurement.
 
 #include <array>
 #include <stdexcept>

@@ -1,5 +1,5 @@
-// Every exact method through the same rasteriser, all layers, against linked lists: Table 1 of Yang et
-// al. 2010.
+// Every exact method against linked lists, with all layers and the same rasteriser: Table 1 of Yang
+// et al. 2010.
 
 #include <array>
 #include <memory>

@@ -1,4 +1,4 @@
-// The nearest layers against all of them: what is gained in time and lost in the picture.
+// The nearest layers against all layers: the gain in time and the loss in the picture.
 
 #include <array>
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::array layer_counts{1U, 2U, 4U, 8U, 16U, 32U};
 
-// A picture of the device in the place of the reference.
+// A picture of the device that takes the place of the reference.
 oit::Reference reference_of(const oit::Renderer& renderer, const oit::Frame& frame) {
     oit::Reference reference;
     reference.width = static_cast<std::size_t>(frame.width());

@@ -1,5 +1,5 @@
-// Whole frames, from the vertices to the image on the device: all layers in lists. First with a wait
-// behind each, then with two at once, where the host enqueues one while the device draws the other.
+// Whole frames with all layers in lists, from the vertices to the image on the device. First the
+// host waits after each frame. Then it enqueues one frame while the device draws the other.
 
 #include <array>
 
@@ -10,7 +10,7 @@
 namespace bench {
 namespace {
 
-// From one image to the next where two frames are drawn at once, each in memory of its own.
+// The time from one image to the next if two frames draw at once, each with its own memory.
 Samples time_two_at_once(const Run& run, oit::Renderer& one, oit::Renderer& other) {
     const std::array renderers{&one, &other};
     std::size_t started = 0;

@@ -1,5 +1,5 @@
-// Speed and accuracy of transparency on the device that CELLIST_DEVICE names: the figures that
-// docs/transparency-results.md has.
+// Measures speed and accuracy of transparency for docs/transparency-results.md. CELLIST_DEVICE
+// names the device.
 
 #include <iostream>
 #include <thread>

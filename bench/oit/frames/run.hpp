@@ -17,7 +17,7 @@
 
 namespace bench {
 
-/// A frame to draw: a scene of the example or a mesh, and how.
+/// A frame to draw: a mesh or a scene of the example, and its settings.
 struct Case {
     std::string name;
     oit::FrameOptions options;
@@ -27,9 +27,9 @@ struct Case {
 [[nodiscard]] Case mesh_case(const std::string& file);
 /// A scene of the example's table, at 1280 x 720.
 [[nodiscard]] Case scene_case(const std::string& name);
-/// gearworks from the view, and at the time, where a pixel has the most layers: 64 at 1280 x 720.
+/// gearworks at the view and time with the most layers in a pixel: 64 at 1280 x 720.
 [[nodiscard]] Case gearworks_of_most_layers();
-/// The same, drawn otherwise.
+/// The same frame with other settings.
 [[nodiscard]] Case with(Case original, const std::string& what,
                         const std::function<void(oit::FrameOptions& options)>& change);
 
@@ -50,29 +50,29 @@ struct RunOptions {
     std::string filter = {};            ///< regular expression of SECTION/CASE
 };
 
-/// What is measured in one run on a device.
+/// The measurements of one run on a device.
 class Run {
 public:
     using Figure = nlohmann::ordered_json;
 
-    /// Refers to the device. Throws InputError where the filter is no regular expression.
+    /// Refers to the device. Throws InputError if the filter is not a regular expression.
     Run(const cellist::Device& device, const RunOptions& options);
 
-    /// A section: the figures that measure(stage) has of each case that is asked for. Cases without
-    /// their mesh and cases that fail are left out.
+    /// Adds a section: measure(stage) gives the figures of each selected case. Cases that fail and
+    /// cases without their mesh are left out.
     void measure(const std::string& section, std::span<const Case> cases,
                  const std::function<std::vector<Figure>(const Stage& stage)>& measure);
 
     /// Notes what cannot be measured, and why.
     void leave_out(const std::string& what, const std::string& reason);
 
-    /// The times of drawings that are warmed up, each of which returns its milliseconds. They draw
-    /// by turns, so that a slow spell of the machine meets all of them.
+    /// The times of drawings after a warm-up. Each drawing returns its milliseconds. They draw
+    /// interleaved, so that a slow phase of the machine slows all of them.
     [[nodiscard]] std::vector<Samples> draw_by_turns(
         std::span<const std::function<double()>> drawings) const;
 
     [[nodiscard]] const cellist::Device& device() const { return device_; }
-    /// A list of figures for each section, and of what was left out.
+    /// A list of figures for each section, and a list of what was left out.
     [[nodiscard]] const Figure& figures() const { return figures_; }
 
 private:

@@ -12,7 +12,7 @@
 namespace oit {
 namespace {
 
-// Ten scenes and views, three budgets each. What each stands for:
+// Ten scenes and views with three budgets each. A comment says what each of them tests.
 const GridView views[]{
     // many pixels without layers, and few layers
     {"teapot", "teapot.obj", "--view 25,8", {"30dB", "40dB", "1/255"}},
@@ -33,11 +33,11 @@ const GridView views[]{
     {"gearworks-turned", "gearworks", "--view 120,40 --time 1.5", {"35dB", "55dB", "4/255"}},
     // each vertex with its own opacity
     {"smoke", "smoke", "--view 25,8", {"30dB", "40dB", "1/255"}},
-    // media, for which the survey knows no bounds of packed formats
+    // media, for which the survey has no bounds of packed formats
     {"smoke-absorb", "smoke", "--blend absorb --view 80,-10", {"35dB", "50dB", "1/255"}},
     // instances of one mesh, for two eyes
     {"rings", "rings", "--view 40,30 --stereo 0.1", {"30dB", "45dB", "1/255"}},
-    // depths do not tell the order; and a budget that no picture of floats can keep
+    // depths do not tell the order; one budget is too tight for any float picture
     {"coplanar", "extreme-coplanar", "--view 0,0", {"30dB", "1/255", "199dB"}},
 };
 

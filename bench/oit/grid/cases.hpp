@@ -9,7 +9,7 @@
 
 namespace oit {
 
-/// A scene as it is seen from somewhere, and the budgets within which it is drawn: a case each.
+/// A view of a scene, and its budgets. Each budget is a case.
 struct GridView {
     std::string name;
     std::string scene;      ///< its name, or a mesh file

@@ -14,7 +14,7 @@
 
 namespace oit {
 
-/// A budget for a view: what was chosen, and what is best.
+/// A budget for a view, the chosen setting, and the best setting.
 struct GridCase {
     std::string name;
     Budget budget;
@@ -23,9 +23,9 @@ struct GridCase {
     std::optional<Trial> best = {};  ///< none where no setting keeps the budget
     double cost = 1;                 ///< median of the chosen one, in medians of the best one
 
-    /// What was promised is true: an error within the budget, or that no setting has one.
+    /// Whether the promise is true: the error is within the budget, or no setting can meet it.
     [[nodiscard]] bool kept() const;
-    /// And at no more than this cost.
+    /// Whether the case passes: it is kept, and costs at most `most_cost` times the best setting.
     [[nodiscard]] bool met(double most_cost) const { return kept() && cost <= most_cost; }
 };
 

@@ -1,4 +1,4 @@
-// Does --budget choose well? Against all settings there are, on ten scenes and views.
+// Compares the choice of --budget with all settings, for ten scenes and views.
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -79,7 +79,7 @@ std::vector<oit::GridView> views_of(const oit::GridOptions& options) {
     return views;
 }
 
-// Whether all cases are met.
+// Whether all cases pass.
 bool run(const oit::GridOptions& options) {
     const cellist::Device device = options.device.empty() ? cellist::Device::choose()
                                                           : cellist::Device::choose(options.device);

@@ -16,12 +16,12 @@ namespace oit {
 namespace {
 
 constexpr double far_slower = 3;
-// Settings within this of the cheapest are timed again to find the best: more than times vary by.
+// Settings within this factor of the cheapest draw again to find the best. It exceeds the noise.
 constexpr double nearly = 1.25;
-// Short frames are drawn more often, until they have taken so long.
+// Short frames draw more often, until they have taken this time.
 constexpr double enough_ms = 200;
 constexpr std::size_t most_runs = 200;
-// Orders of a pixel's layers that are tried, at most.
+// The most orders of a pixel's layers to try.
 constexpr int most_orders = 5000;
 
 Reference reference_of(const Frame& frame) {
@@ -105,7 +105,7 @@ struct Search::Drawn {
 
 Search::Search(const cellist::Device& device, const Frame& frame, std::uint32_t runs)
     : frame_(frame), truth_(device, frame), runs_(runs) {
-    // The device may find one layer more than the reference, where that is no more than rounding.
+    // Rounding alone may give the device one layer more than the reference.
     for (const Setting& setting : settings_for(frame, truth_.reference().most_layers() + 1))
         trials_.push_back({.setting = setting});
     drawn_.resize(trials_.size());
