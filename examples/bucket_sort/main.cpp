@@ -39,13 +39,15 @@ Options parse_options(int count, const char* const* arguments) {
     app.add_option("--distribution", options.distribution, names + "or all")
         ->type_name("NAME")
         ->capture_default_str();
-    app.add_option("--storage", storage, "how the lists are stored")
+    app.add_option("--storage", storage, "storage of the lists")
         ->type_name("linked|counted|fixed")
         ->capture_default_str();
-    app.add_option("--runs", runs, "timed runs, after one that is not; the fastest counts")
+    app.add_option("--runs", runs, "timed runs, after a warm-up; the fastest counts")
         ->type_name("N")
         ->capture_default_str();
-    app.add_option("--seed", seed, "of the random numbers")->type_name("N")->capture_default_str();
+    app.add_option("--seed", seed, "seed of the random numbers")
+        ->type_name("N")
+        ->capture_default_str();
     app.add_option("--device", options.device,
                    "index or part of the name of the device; else CELLIST_DEVICE, a GPU, or the "
                    "first")

@@ -61,7 +61,7 @@ void read_view(const std::string& text, FrameOptions& options) {
     if (!azimuth || !elevation || !std::isfinite(*azimuth) || !std::isfinite(*elevation))
         refuse("--view", text, "AZIMUTH,ELEVATION in degrees, such as 25,8");
     if (std::abs(*elevation) > 90)
-        throw InputError("--view " + text + ": the elevation lies between -90 and 90");
+        throw InputError("--view " + text + ": the elevation must be from -90 to 90");
     options.orbit = {.azimuth_degrees = std::fmod(*azimuth, 360.0),
                      .elevation_degrees = *elevation};
 }
@@ -106,7 +106,7 @@ void read_blend(const std::string& text, FrameOptions& options) {
     std::string function = support::read_file("--blend file", text, most_bytes);
     if (function.find('\0') != std::string::npos)
         throw InputError("--blend " + support::text_of(text) +
-                         ": not a text, for it has a byte of 0");
+                         ": not a text file: it has a byte of 0");
     // Other text comes before it, and a byte order mark may only start a source.
     if (function.starts_with("\xEF\xBB\xBF")) function.erase(0, 3);
     options.blend = Blend::user;
@@ -282,9 +282,9 @@ FrameArguments::FrameArguments(CLI::App& app, const FrameOptions& options)
                    "ALPHA is given; or a scene")
         ->type_name("MESH[:ALPHA]...|SCENE");
     add("--size", size_, "image size in pixels", "WxH");
-    add("--alpha", alpha_, "opacity, 0 to 1, of surfaces whose file does not give one", "A");
-    add("--up", up_, "axis that points up in the mesh files: x, y or z; else each file decides",
-        "AXIS");
+    add("--alpha", alpha_, "opacity of surfaces whose file gives none, 0 to 1", "A");
+    add("--up", up_,
+        "axis that points up in the mesh files: x, y or z; by default, each file decides", "AXIS");
     add("--blend", blend_,
         "how surfaces blend: over, additive, multiplicative, absorb, or a file with a function",
         "KIND|FILE");
@@ -292,11 +292,11 @@ FrameArguments::FrameArguments(CLI::App& app, const FrameOptions& options)
     add("--resolve", resolve_, "where samples are blended: pixel or sample", "WHERE");
     app.add_flag("--depth-range", depth_range_,
                  "order surfaces that meet within a pixel by their depths in each sample");
-    add("--depth-scale", depth_scale_,
-        "what is stored as depth: linear (the depth) or reversed (1 / depth)", "S");
+    add("--depth-scale", depth_scale_, "stored depth: linear (the depth) or reversed (1 / depth)",
+        "S");
     add("--view", view_, "direction to look from, in degrees", "AZIMUTH,ELEVATION");
-    add("--stereo", eyes_, "two eyes, this far apart; the scene has radius 1", "DISTANCE");
-    add("--time", time_, "of an animated scene, in seconds", "T");
+    add("--stereo", eyes_, "draw two eyes at this distance; the scene has radius 1", "DISTANCE");
+    add("--time", time_, "time of an animated scene, in seconds", "T");
     app.add_flag("--opaque-floor", opaque_floor_, "stand the scene on an opaque floor");
     add("--device", device_,
         "index or part of the name of the device; else CELLIST_DEVICE, a GPU, or the first", "D");

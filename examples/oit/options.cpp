@@ -157,24 +157,22 @@ Options parse_options(int count, const char* const* arguments) {
         add_option(app, name, value, what, type);
     };
     const FrameArguments frame(app, options);
-    add("--method", method, "how the fragments become an image", "M[:SIZE]");
+    add("--method", method, "transparency method, from the list below", "M[:SIZE]");
     add("--layers", layers, "nearest layers to blend", "K|all");
-    add("--epsilon", epsilon, "stop blending where no more than this part of the light passes",
-        "E");
-    add("--format", format, "colour and depth of fragments", "F");
+    add("--epsilon", epsilon, "stop blending when no more than this part of the light passes", "E");
+    add("--format", format, "format of colour and depth in a fragment", "F");
     add("--reduce", reduce,
         "draw transparent surfaces with 2 or 4 times fewer pixels a side, and enlarge them", "N");
     add("--memory", memory,
-        "what the method may take on the device, such as 64MiB; lists are drawn in slices",
+        "limit on the device memory of the method, such as 64MiB; lists are drawn in slices",
         "BYTES");
-    add("--budget", budget, "choose method and setting: PSNR at least, or largest error at most",
-        "40dB|1/255");
-    add("--check-every", check_every, "of the frames that change, check each N-th for the budget",
-        "N");
+    add("--budget", budget,
+        "find the cheapest setting with at least this PSNR, or at most this error", "40dB|1/255");
+    add("--check-every", check_every, "check each N-th changed frame against the budget", "N");
     add("--search-seconds", search_seconds,
         "time limit of the search for a setting within the budget", "S");
     app.add_flag("--strict", strict,
-                 "also hold the budget in undecided pixels, where float depths do not tell the "
+                 "also apply the budget to undecided pixels, where float depths do not tell the "
                  "order of layers");
     add("--until", until, "time of the last frame, in seconds; the first is at --time", "T");
     add("--turn", turn, "turn the camera from the first frame to the last", "DEGREES");
@@ -183,13 +181,14 @@ Options parse_options(int count, const char* const* arguments) {
     add("--out", out,
         "picture to write: .png, .jpg, .pfm or .exr, - for stdout; all frames as frame-%04d.png",
         "FILE");
-    add("--write-reference", write_reference, "write the picture in double precision here", "FILE");
+    add("--write-reference", write_reference,
+        "write the rendering in double precision to this file", "FILE");
     add("--write-difference", write_difference,
-        "write the difference from that picture: times 16 in .png and .jpg, unscaled in .pfm and "
+        "write the difference from that rendering: times 16 in .png and .jpg, unscaled in .pfm and "
         ".exr",
         "FILE");
-    add("--json", json, "write the figures to this file", "FILE");
-    add("--frames", frames, "timed frames, after those that warm up; times are medians", "N");
+    add("--json", json, "write the metrics to this file", "FILE");
+    add("--frames", frames, "timed frames, after a warm-up; times are medians", "N");
     app.footer(help_on_tables());
     if (const auto help = support::parse_command_line(app, count, arguments)) {
         options.help = true;

@@ -42,25 +42,27 @@ Options parse_options(int count, const char* const* arguments) {
                 check = "50000", runs = "3", seed = "1";
     CLI::App app{"Finds all neighbours of points within a radius, through per-cell lists.",
                  "particles"};
-    app.add_option("--points", points, "number of points, about 30 neighbours each")
+    app.add_option("--points", points, "number of points; each has about 30 neighbours")
         ->type_name("N")
         ->capture_default_str();
-    app.add_option("--box", box, "how space ends")
+    app.add_option("--box", box, "boundary of space")
         ->type_name("periodic|open")
         ->capture_default_str();
-    app.add_option("--storage", storage, "how the lists are stored")
+    app.add_option("--storage", storage, "storage of the lists")
         ->type_name("linked|counted|fixed")
         ->capture_default_str();
     app.add_option("--cells", cells, "cells along the radius")
         ->type_name("1..4")
         ->capture_default_str();
-    app.add_option("--check", check, "points, at most, whose neighbours are found again on the CPU")
+    app.add_option("--check", check, "greatest number of points to check on the CPU")
         ->type_name("N|all")
         ->capture_default_str();
-    app.add_option("--runs", runs, "timed runs, after one that is not; the fastest counts")
+    app.add_option("--runs", runs, "timed runs, after a warm-up; the fastest counts")
         ->type_name("N")
         ->capture_default_str();
-    app.add_option("--seed", seed, "of the random numbers")->type_name("N")->capture_default_str();
+    app.add_option("--seed", seed, "seed of the random numbers")
+        ->type_name("N")
+        ->capture_default_str();
     app.add_option("--device", options.device,
                    "index or part of the name of the device; else CELLIST_DEVICE, a GPU, or the "
                    "first")

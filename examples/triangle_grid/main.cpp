@@ -43,28 +43,30 @@ Options parse_options(int count, const char* const* arguments) {
     Options options;
     std::string mesh, out, grid = "64", storage = "counted", segments = "1000000", check = "3000",
                            seed = "1";
-    CLI::App app{"Puts the triangles of a mesh into a 3D grid and shoots segments at them.",
-                 "triangle_grid"};
-    app.add_option("mesh", mesh, "mesh to read: PLY, OBJ, glTF, STL, OFF, ...; else a knot")
+    CLI::App app{
+        "Puts the triangles of a mesh into a 3D grid, and finds the segments that meet a triangle.",
+        "triangle_grid"};
+    app.add_option("mesh", mesh, "mesh file (PLY, OBJ, glTF, STL, OFF, ...); the default is a knot")
         ->type_name("MESH");
     app.add_option("--grid", grid, "cells along the longest side of the mesh")
         ->type_name("N")
         ->capture_default_str();
-    app.add_option("--storage", storage, "how the lists are stored")
+    app.add_option("--storage", storage, "storage of the lists")
         ->type_name("linked|counted|fixed")
         ->capture_default_str();
     app.add_option("--segments", segments, "number of segments")
         ->type_name("N")
         ->capture_default_str();
-    app.add_option("--check", check,
-                   "segments, at most, that are held against every triangle on the CPU")
+    app.add_option("--check", check, "greatest number of segments to check on the CPU")
         ->type_name("N|all")
         ->capture_default_str();
     app.add_option(
            "--out", out,
            "draw the mesh with shadows and write the picture here: .png, .jpg, .pfm or .exr")
         ->type_name("FILE");
-    app.add_option("--seed", seed, "of the random numbers")->type_name("N")->capture_default_str();
+    app.add_option("--seed", seed, "seed of the random numbers")
+        ->type_name("N")
+        ->capture_default_str();
     app.add_option("--device", options.device,
                    "index or part of the name of the device; else CELLIST_DEVICE, a GPU, or the "
                    "first")

@@ -24,17 +24,16 @@ Options parse(int count, const char* const* arguments) {
     std::string size = oit::shortest(options.size), frames = std::to_string(options.frames), meshes,
                 json;
     CLI::App app{
-        "Measures whole frames, exact methods, fewer layers, plain C++ and the accuracy of "
-        "all layers.",
+        "Measures the times of whole frames, exact methods, fewer layers and plain C++, and the "
+        "accuracy of all layers.",
         "cellist-oit-frames"};
     oit::add_option(app, "--meshes", meshes, "folder with teapot.obj and dragon.ply", "FOLDER");
-    oit::add_option(app, "--json", json, "write the figures to this file", "FILE");
-    oit::add_option(app, "--git", options.git, "the commit that the figures name", "HASH");
+    oit::add_option(app, "--json", json, "write the metrics to this file", "FILE");
+    oit::add_option(app, "--git", options.git, "the commit to record in the results", "HASH");
     oit::add_option(app, "--filter", options.filter,
-                    "only what matches this regular expression: SECTION/CASE", "RE");
-    oit::add_option(app, "--size", size, "factor of the sides of all images", "F");
-    oit::add_option(app, "--frames", frames, "timed frames of each kind, after those that warm up",
-                    "N");
+                    "run only what matches this regular expression: SECTION/CASE", "RE");
+    oit::add_option(app, "--size", size, "factor for the sides of all images", "F");
+    oit::add_option(app, "--frames", frames, "timed frames of each kind, after a warm-up", "N");
     app.footer("Sections: frame_times, exact_methods, fewer_layers, plain_cpp, accuracy\n");
     if (const auto help = support::parse_command_line(app, count, arguments)) {
         options.help_text = *help;

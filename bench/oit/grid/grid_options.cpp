@@ -23,31 +23,30 @@ GridOptions parse_grid_options(int count, const char* const* arguments) {
                 frames = std::to_string(options.frames), cost = shortest(options.cost), meshes,
                 json;
     CLI::App app{
-        "Draws ten scenes and views, or the meshes that are given, within three budgets each, as "
-        "cellist-oit --budget does, and "
-        "looks for the cheapest setting that keeps the budget among all there are, by drawing all "
-        "of them and comparing them with a rendering in double precision.\n"
-        "A case is met if what --budget chose keeps the budget against that rendering, and costs "
-        "no "
-        "more than 1.1 times as much as the best; or if no setting keeps it, and --budget says so. "
-        "The exit code is 0 if all cases are met, and 1 otherwise.\n"
-        "PoCL on 2 cores takes less than 10 minutes, and as long again the first time, to build "
-        "the kernels.",
+        "Checks the choices of cellist-oit --budget, with three budgets for each of ten scenes and "
+        "views, or of the given meshes. Draws all settings, compares them with a rendering in "
+        "double precision, and finds the cheapest setting within each budget.\n"
+        "A case passes if the chosen setting is within the budget and costs at most 1.1 times as "
+        "much as the cheapest. It also passes if no setting is within the budget and --budget says "
+        "so. The exit code is 0 if all cases pass, and 1 otherwise.\n"
+        "PoCL on 2 cores takes less than 10 minutes, and twice as long the first time, because it "
+        "builds the kernels.",
         "cellist-budget-grid"};
     const auto add = [&](const char* name, std::string& value, const char* what, const char* type) {
         add_option(app, name, value, what, type);
     };
     std::vector<std::string> files;
-    app.add_option("mesh", files, "meshes to draw, instead of the ten scenes and views")
+    app.add_option("mesh", files, "meshes to draw instead of the ten scenes and views")
         ->type_name("MESH...");
-    add("--meshes", meshes, "has teapot.obj and dragon.ply, whose cases are left out without it",
-        "DIR");
+    add("--meshes", meshes,
+        "folder with teapot.obj and dragon.ply; their cases are left out without it", "DIR");
     add("--size", size, "image size in pixels", "WxH");
-    add("--filter", options.filter, "only the views whose names have this text in them", "TEXT");
-    add("--frames", frames, "timed frames of each setting, at least; more where it is close", "N");
-    add("--cost", cost, "of what was chosen, in costs of the best, at most", "RATIO");
-    add("--json", json, "write the figures to this file", "FILE");
-    add("--git", options.git, "the commit that the figures name", "HASH");
+    add("--filter", options.filter, "run only the views whose names contain this text", "TEXT");
+    add("--frames", frames,
+        "least number of timed frames of each setting; close settings draw more", "N");
+    add("--cost", cost, "greatest cost of the chosen setting, relative to the best", "RATIO");
+    add("--json", json, "write the metrics to this file", "FILE");
+    add("--git", options.git, "the commit to record in the results", "HASH");
     add("--device", options.device,
         "index or part of the name of the device; else CELLIST_DEVICE, a GPU, or the first", "D");
     if (const auto help = support::parse_command_line(app, count, arguments)) {
@@ -66,7 +65,7 @@ GridOptions parse_grid_options(int count, const char* const* arguments) {
     for (const std::string& file : files) {
         std::error_code error;
         if (!std::filesystem::is_regular_file(file, error))
-            throw support::InputError("'" + support::text_of(file) + "' is no file");
+            throw support::InputError("'" + support::text_of(file) + "' is not a regular file");
         options.files.emplace_back(file);
     }
     options.meshes = meshes;

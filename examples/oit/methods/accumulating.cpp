@@ -11,15 +11,15 @@ std::string accumulating_text(std::string_view source) {
 
 std::string accumulating_refusal(const Frame& frame, const Needs& needs) {
     if (needs.blends != 0 && needs.blends != 1U << static_cast<std::uint32_t>(Blend::over))
-        return "it knows surfaces that cover what is behind them, and no other kind of blending";
-    if (frame.quality.depth_range) return "it has no depths in each sample";
+        return "it supports only surfaces that cover what is behind them";
+    if (frame.quality.depth_range) return "it has no depth for each sample";
     if (frame.quality.layers) return "it blends all layers at once";
     return {};
 }
 
 void require_wide_sums(const cellist::Device& device) {
     if (!device.info().int64_atomics)
-        throw support::InputError("adding fragments up needs atomic operations of 64 bits, which " +
+        throw support::InputError("adding up fragments needs 64-bit atomic operations, which " +
                                   device.info().name + " does not have");
 }
 

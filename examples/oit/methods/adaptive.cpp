@@ -21,7 +21,7 @@ std::unique_ptr<Method> make(FragmentSource& source) {
 
 const MethodRegistration adaptive(
     {.name = "adaptive",
-     .summary = "transmittance as a function of 8 or other steps (Salvi et al. 2011)",
+     .summary = "transmittance as a step function, 8 steps by default (Salvi et al. 2011)",
      .position = 110,
      .exact = false,
      .sizes = sizes,

@@ -18,7 +18,7 @@ struct Range {
 };
 
 std::string refusal(const Frame& frame, const Needs& needs) {
-    if (frame.quality.layers) return "it takes layers out of turn and cannot count them";
+    if (frame.quality.layers) return "it takes layers out of order and cannot count them";
     return peeling_refusal(frame, needs);
 }
 
@@ -96,7 +96,7 @@ std::uint64_t passes(const SceneMeasure&, const Quality&) { return 3; }
 
 const MethodRegistration bucket_peeling(
     {.name = "bucket_peeling",
-     .summary = "a layer of each of 8 or other ranges of depth a pass (Liu et al. 2009)",
+     .summary = "a layer of each depth range in a pass, 8 ranges by default (Liu et al. 2009)",
      .position = 60,
      .exact = true,
      .sizes = sizes,

@@ -8,15 +8,14 @@ std::unique_ptr<Method> make(FragmentSource& source) {
     return make_list_method(source, {.storage = cellist::Storage::counted});
 }
 
-const MethodRegistration counted(
-    {.name = "counted",
-     .summary = "lists behind one another, in two passes (prefix sums)",
-     .position = 20,
-     .exact = true,
-     .refusal = refuses_nothing,
-     .make = make,
-     .bound = bound_of_layers,
-     .passes = two_passes});
+const MethodRegistration counted({.name = "counted",
+                                  .summary = "contiguous lists, in two passes (prefix sums)",
+                                  .position = 20,
+                                  .exact = true,
+                                  .refusal = refuses_nothing,
+                                  .make = make,
+                                  .bound = bound_of_layers,
+                                  .passes = two_passes});
 
 }  // namespace
 }  // namespace oit

@@ -12,8 +12,8 @@ struct Keys {
 
 std::string refusal(const Frame& frame, const Needs& needs) {
     if (needs.has(Blend::absorb) || needs.has(Blend::user))
-        return "it blends from both sides, where distances between layers are not known";
-    if (frame.quality.layers) return "it takes the farthest layers with the nearest";
+        return "it blends from both sides and does not know the distances between layers";
+    if (frame.quality.layers) return "it takes the farthest layers together with the nearest";
     return peeling_refusal(frame, needs);
 }
 
@@ -71,7 +71,7 @@ std::uint64_t passes(const SceneMeasure& scene, const Quality&) {
 
 const MethodRegistration dual_peeling(
     {.name = "dual_peeling",
-     .summary = "the nearest and the farthest layer a pass (Bavoil, Myers 2008)",
+     .summary = "the nearest and the farthest layer in each pass (Bavoil, Myers 2008)",
      .position = 50,
      .exact = true,
      .refusal = refusal,

@@ -10,7 +10,7 @@ std::unique_ptr<Method> make(FragmentSource& source) {
 
 const MethodRegistration fixed(
     {.name = "fixed",
-     .summary = "slots for each pixel, as many as the longest list (FreePipe, Liu et al. 2010)",
+     .summary = "fixed slots for each pixel, up to the longest list (FreePipe, Liu et al. 2010)",
      .position = 30,
      .exact = true,
      .refusal = refuses_nothing,

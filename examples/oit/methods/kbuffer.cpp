@@ -40,7 +40,7 @@ std::optional<PictureError> bound(const SceneMeasure& scene, const Quality& qual
 
 const MethodRegistration kbuffer(
     {.name = "kbuffer",
-     .summary = "the 8 nearest layers, or as many as asked for (Bavoil et al. 2007)",
+     .summary = "the nearest layers, 8 by default (Bavoil et al. 2007)",
      .position = 70,
      .exact = false,
      .sizes = sizes,

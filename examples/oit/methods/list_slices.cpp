@@ -94,7 +94,7 @@ private:
         const std::uint64_t longest = count_fragments(source_).longest;
         throw support::InputError(
             "--memory of " + std::to_string(budget()) +
-            " bytes is too little for this frame: the least that works is " +
+            " bytes is too little for this frame: it needs at least " +
             std::to_string(head_bytes_ + count_bytes_ + longest * node_bytes_) + " bytes, for " +
             std::to_string(source_.frame().pixels()) + " pixels and a list of " +
             std::to_string(longest) + " fragments");

@@ -33,8 +33,8 @@ const MethodInfo& method_named(std::string_view name) {
         list.append(list.empty() ? "" : ", ").append(info.name);
         names.emplace_back(info.name);
     }
-    throw support::InputError("no method is called '" + std::string(name) + "'" +
-                              support::did_you_mean(name, names) + ": there are " + list);
+    throw support::InputError("there is no method '" + std::string(name) + "'" +
+                              support::did_you_mean(name, names) + "; the methods are " + list);
 }
 
 std::uint32_t read_size_of(const MethodInfo& method, const std::string& text) {
@@ -44,8 +44,8 @@ std::uint32_t read_size_of(const MethodInfo& method, const std::string& text) {
         known += (known.empty() ? "" : ", ") + std::to_string(size);
     }
     const std::string name(method.name);
-    throw support::InputError("no size of the method " + name + " is '" + text +
-                              "': " + (known.empty() ? "it has none" : "there are " + known));
+    throw support::InputError("the method " + name + " has no size '" + text +
+                              (known.empty() ? "': it has no sizes" : "': the sizes are " + known));
 }
 
 std::optional<PictureError> no_bound(const SceneMeasure&, const Quality&) { return {}; }

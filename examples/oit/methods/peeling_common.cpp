@@ -10,7 +10,7 @@ std::string peeling_text(std::string_view source) {
 }
 
 std::string peeling_refusal(const Frame& frame, const Needs&) {
-    if (frame.quality.depth_range) return "it has no depths in each sample";
+    if (frame.quality.depth_range) return "it has no depth for each sample";
     if (frame.quality.samples > 1 && frame.quality.resolve == Resolve::per_sample)
         return "it resolves samples by pixel";
     return {};
@@ -21,7 +21,7 @@ void require_wide_atomics(const cellist::Device& device, std::string_view what) 
         if (one.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_khr_int64_extended_atomics") ==
             std::string::npos)
             throw support::InputError(std::string(what) +
-                                      " needs atomic operations of 64 bits, which " +
+                                      " needs 64-bit atomic operations, which " +
                                       device.info().name + " does not have");
 }
 

@@ -18,8 +18,8 @@ void check_memory(const Method& method, const std::optional<std::uint64_t>& most
     if (most && method.device_bytes() > *most)
         throw support::InputError("the method takes " + std::to_string(method.device_bytes()) +
                                   " bytes, over the " + std::to_string(*most) +
-                                  " of --memory: raise it to that, or take a method with lists, "
-                                  "which are drawn in slices");
+                                  " of --memory: raise the limit, or use a method that draws lists "
+                                  "in slices");
 }
 
 std::unique_ptr<Reduction> make_reduction(const cellist::Device& device, const Frame& frame) {

@@ -51,7 +51,7 @@ private:
 
 const MethodRegistration stochastic(
     {.name = "stochastic",
-     .summary = "8 or other random trials of which fragments hide others (Enderton et al. 2010)",
+     .summary = "random trials of visibility, 8 by default (Enderton et al. 2010)",
      .position = 90,
      .exact = false,
      .has_nodes = false,

@@ -43,7 +43,7 @@ std::uint64_t median_layers(const SceneMeasure& scene) {
 }
 
 std::string layers_text(const SceneMeasure& scene) {
-    if (scene.fragments == 0) return "nothing transparent is to be seen";
+    if (scene.fragments == 0) return "nothing transparent is visible";
     return counted(scene.fragments, "fragment") + " in " +
            percent(static_cast<double>(scene.nonempty_pixels) / static_cast<double>(scene.pixels)) +
            " of the pixels, half of these with " + counted(median_layers(scene), "layer") +
@@ -61,9 +61,9 @@ std::string light_text(const SceneMeasure& scene) {
 
 std::string untold_text(const SceneMeasure& scene) {
     const auto& [of_float, of_24, of_16] = scene.pixels_untold;
-    if (of_float + of_24 + of_16 == 0) return "told in all pixels, by depths of 16 bits already";
-    return "not told in " + counted(of_float, "pixel") + " by depths of float, in " +
-           grouped(of_24) + " by 24 bits, in " + grouped(of_16) + " by 16 bits";
+    if (of_float + of_24 + of_16 == 0) return "resolved in all pixels, even with depths of 16 bits";
+    return "not resolved in " + counted(of_float, "pixel") + " with float depths, in " +
+           grouped(of_24) + " with 24 bits, in " + grouped(of_16) + " with 16 bits";
 }
 
 std::string reason(const Candidate& candidate) {
@@ -88,8 +88,8 @@ std::string reason(const Candidate& candidate) {
 
 const char* basis(bool bounded) {
     return bounded ? "by its bound"
-                   : "compared with all layers in float, that picture's own "
-                     "error included";
+                   : "compared with all layers in float, including the error of "
+                     "that picture";
 }
 
 // "41.3 dB at least" or "0.71/255 at most".
@@ -129,9 +129,9 @@ std::string chosen_text(const Choice& choice) {
 std::string plainest_text(const Choice& choice) {
     const std::uint64_t others = choice.count(Fate::as_fast);
     if (others == 0) return {};
-    return "times do not tell " +
-           std::string(others == 1 ? "one other setting" : grouped(others) + " other settings") +
-           " from the fastest: the plainest is chosen";
+    return std::string(others == 1 ? "one other setting is"
+                                   : grouped(others) + " other settings are") +
+           " as fast, within the spread of the times: the plainest is chosen";
 }
 
 std::string search_text(const Choice& choice) {
@@ -140,7 +140,7 @@ std::string search_text(const Choice& choice) {
                        " s";
     if (const std::uint64_t left = choice.count(Fate::not_reached); left > 0)
         text +=
-            "; the time was over before " + counted(left, "setting") + ": raise --search-seconds";
+            "; the time limit left out " + counted(left, "setting") + ": raise --search-seconds";
     return text;
 }
 
@@ -224,7 +224,7 @@ std::string not_met_reason(const Choice& choice, const Budget& budget) {
                    : "no setting meets the budget";
     return (budget.kind == Budget::Kind::psnr ? "no more than " : "no less than ") +
            budget.text_of(choice.scene.exact) +
-           " can be proven of any picture of this frame, for floats are rounded; "
+           " can be proven for any picture of this frame, because floats are rounded; "
            "the picture may be better";
 }
 
@@ -289,13 +289,13 @@ void print(const Choice& choice, const Budget& budget, const KeptBudget& kept, s
         line("light that passes", light_text(scene));
         line("order of layers", untold_text(scene));
     }
-    line(choice.met ? "chosen" : "best there is", chosen_text(choice));
+    line(choice.met ? "chosen" : "best setting", chosen_text(choice));
     line("", plainest_text(choice));
     line("error", limit_text(budget.counted(choice.errors), budget) + ", " + basis(choice.bounded));
     if (scene.pixels_untold[0] > 0) line("", other_order_text(choice, budget));
     line("speed", speed_text(choice));
     line("search", search_text(choice));
-    line("others", std::string(choice.met ? "time against the chosen one, and " : "") +
+    line("others", std::string(choice.met ? "time relative to the chosen one, and " : "") +
                        (is_psnr ? "PSNR at least" : "error at most"));
     print_others(choice, budget, out);
     if (kept.changed() > 0) line("kept", kept_text(budget, kept));

@@ -41,7 +41,7 @@ void print_comparison(const Report& report, const Line& line) {
                        << " explained by depths closer than 2^-20 of each other\n";
     if (!c.has_depths) {
         line("counts, depths") << "not compared: "
-                               << (report.blends_slices ? "lists are there a slice at a time"
+                               << (report.blends_slices ? "lists exist one slice at a time"
                                                         : "the method does not keep all fragments")
                                << '\n';
         return;

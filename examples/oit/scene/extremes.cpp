@@ -178,7 +178,7 @@ const SceneRegistration registrations[]{
     SceneRegistration(
         {"extreme-slivers", "triangles thinner than a pixel, and of any size", slivers}),
     SceneRegistration({"extreme-far", "corners at 10^30", far}),
-    SceneRegistration({"extreme-nan", "vertices that are no numbers", nan}),
+    SceneRegistration({"extreme-nan", "NaN vertices", nan}),
     SceneRegistration({"extreme-nothing", "no surfaces", nothing, false}),
     SceneRegistration({"extreme-opaque", "no transparent surfaces", opaque, false}),
 };

@@ -141,7 +141,7 @@ Scene make(float alpha) {
 
 const SceneRegistration smoke(
     {.name = "smoke",
-     .summary = "surfaces of smoke, the thinner the more the flow has stretched them",
+     .summary = "smoke surfaces whose opacity falls as the flow stretches them",
      .make = make});
 
 }  // namespace

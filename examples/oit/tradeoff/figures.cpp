@@ -36,13 +36,13 @@ void print_settings(const Sweep& sweep, std::ostream& out) {
                 << "  " << text(m.setting) << ": " << m.failure << '\n';
     }
     const double equal = equally_fast - 1, spread = typical_spread(sweep.measurements);
-    out << " * nothing here is both as fast, within " << fixed(100 * equal, 0)
-        << " % or with spreads that overlap, and as accurate\n"
+    out << " * no other setting is both as fast (within " << fixed(100 * equal, 0)
+        << " % or with overlapping spreads) and as accurate\n"
            "   error: the largest of any channel\n"
            " +-%: half of the frames differ from the median by no more\n";
     if (spread > equal)
-        out << " The times are uncertain: those of half the settings spread by "
-            << fixed(100 * spread, 0) << " % and more. Smaller differences mean nothing.\n";
+        out << " The times are uncertain: half of the settings have a spread of "
+            << fixed(100 * spread, 0) << " % or more. Ignore smaller differences.\n";
 }
 
 std::string quartiles(const Relation& relation) {
@@ -51,7 +51,7 @@ std::string quartiles(const Relation& relation) {
 
 // What a factor is worth.
 std::string untold(const Relation& relation) {
-    return relation.told ? "" : "  not told apart: the spreads overlap";
+    return relation.told ? "" : "  not significant: the spreads overlap";
 }
 
 void print_fewer_layers(const Sweep& sweep, std::ostream& out) {

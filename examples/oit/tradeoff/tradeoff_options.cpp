@@ -24,7 +24,7 @@ std::vector<std::string_view> read_methods(const std::string& text) {
         if (text == "all" || (text == "exact" && info.exact) ||
             std::ranges::find(asked, info.name) != asked.end())
             names.push_back(info.name);
-    if (names.empty()) support::refuse("--methods", text, "names with commas between them");
+    if (names.empty()) support::refuse("--methods", text, "names, separated by commas");
     return names;
 }
 
@@ -40,8 +40,8 @@ TradeoffOptions parse_tradeoff_options(int count, const char* const* arguments) 
     options.height = 360;
     std::string methods = "all", frames = std::to_string(options.frames), json, csv, html;
     CLI::App app{
-        "Draws a scene with every method and setting, and measures what each costs and how far it "
-        "is from a rendering in double precision.",
+        "Draws a scene with every method and setting. Measures the cost of each, and its error "
+        "against a rendering in double precision.",
         "cellist-tradeoff"};
     const auto add = [&](const char* name, std::string& value, const char* what, const char* type) {
         add_option(app, name, value, what, type);
@@ -50,7 +50,7 @@ TradeoffOptions parse_tradeoff_options(int count, const char* const* arguments) 
     add("--methods", methods, "methods to compare: all, exact, or names", "M,M,...");
     add("--frames", frames,
         "timed frames of each setting, in three rounds over all of them; times are medians", "N");
-    add("--json", json, "write the figures to this file", "FILE");
+    add("--json", json, "write the metrics to this file", "FILE");
     add("--csv", csv, "write a table with a line for each setting to this file", "FILE");
     add("--html", html, "write a report with plot and pictures to this file", "FILE");
     app.footer(help_on_tables());

@@ -45,7 +45,7 @@ public:
             read_line(keyword);
             (void)lines_.rest_of_line();
         }
-        throw InputError(quoted("mesh", path_) + " is truncated: its PLY header has no end");
+        throw InputError(quoted("mesh", path_) + " is truncated: its PLY header does not end");
     }
 
 private:

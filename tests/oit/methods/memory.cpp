@@ -44,7 +44,7 @@ std::string refusal(const oit::Frame& frame, const oit::MethodInfo& method) {
 // What the refusal of a budget of one byte says to be enough.
 std::uint64_t least_of(const oit::Frame& frame, const oit::MethodInfo& method) {
     const std::string message = refusal(bounded(frame, 1), method);
-    const std::string mark = "the least that works is ";
+    const std::string mark = "it needs at least ";
     REQUIRE(contains(message, mark));
     return std::stoull(message.substr(message.find(mark) + mark.size()));
 }

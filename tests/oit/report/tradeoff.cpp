@@ -89,7 +89,7 @@ TEST_CASE("a relation of times whose spreads overlap is not told") {
     CHECK_FALSE(exact[1].told);
     std::ostringstream out;
     print(noisy, out);
-    CHECK(contains(out.str(), "counted  not told apart"));
+    CHECK(contains(out.str(), "counted  not significant"));
     const json figures = json::parse(oit::dump(to_json(noisy), 2));
     CHECK(figures["exact_methods"][1]["told_apart"] == false);
     CHECK(oit::exact_methods(sweep())[1].told);
