@@ -429,7 +429,7 @@ bool fits(const Workload& w) {
     // A device that cannot answer is broken: the case then fails with its name.
     if (cudaMemGetInfo(&free, &total) != cudaSuccess) return true;
     const bool room = std::size_t{w.nodes} * 80 + std::size_t{w.cells()} * 12 < free;
-    if (!room) std::fprintf(stderr, "left out, for want of memory: %s\n", w.name().c_str());
+    if (!room) std::fprintf(stderr, "left out, not enough memory: %s\n", w.name().c_str());
     return room;
 }
 

@@ -49,8 +49,8 @@ Options parse_options(int count, const char* const* arguments) {
         ->type_name("N")
         ->capture_default_str();
     app.add_option("--device", options.device,
-                   "index or part of the name of the device; else CELLIST_DEVICE, a GPU, or the "
-                   "first")
+                   "device, by index or part of its name; the default is CELLIST_DEVICE, a GPU, or "
+                   "the first")
         ->type_name("D");
     if (const auto help = support::parse_command_line(app, count, arguments)) {
         options.help = *help;

@@ -299,7 +299,8 @@ FrameArguments::FrameArguments(CLI::App& app, const FrameOptions& options)
     add("--time", time_, "time of an animated scene, in seconds", "T");
     app.add_flag("--opaque-floor", opaque_floor_, "stand the scene on an opaque floor");
     add("--device", device_,
-        "index or part of the name of the device; else CELLIST_DEVICE, a GPU, or the first", "D");
+        "device, by index or part of its name; the default is CELLIST_DEVICE, a GPU, or the first",
+        "D");
 }
 
 void FrameArguments::read(FrameOptions& options) const {

@@ -48,7 +48,8 @@ GridOptions parse_grid_options(int count, const char* const* arguments) {
     add("--json", json, "write the metrics to this file", "FILE");
     add("--git", options.git, "the commit to record in the results", "HASH");
     add("--device", options.device,
-        "index or part of the name of the device; else CELLIST_DEVICE, a GPU, or the first", "D");
+        "device, by index or part of its name; the default is CELLIST_DEVICE, a GPU, or the first",
+        "D");
     if (const auto help = support::parse_command_line(app, count, arguments)) {
         options.help = true;
         options.help_text = *help;

@@ -91,8 +91,8 @@ bool run(const oit::GridOptions& options) {
     for (const oit::GridView& view : views) {
         if (view.name.find(options.filter) == std::string::npos) continue;
         if (options.files.empty() && options.meshes.empty() && is_of_mesh(view)) {
-            std::cout << "left out, for want of --meshes: " << view.name << ", "
-                      << view.budgets.size() << " cases\n";
+            std::cout << "left out without --meshes: " << view.name << ", " << view.budgets.size()
+                      << " cases\n";
             continue;
         }
         results.push_back(run_view(device, view, options));
