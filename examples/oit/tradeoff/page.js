@@ -59,7 +59,7 @@ fillTable(byId("settings"), drawn, [
 ], row => row.pareto ? "on-front" : "");
 
 const range = (least, most) => `${least.toFixed(2)} to ${most.toFixed(2)}`;
-const untold = row => row.told_apart ? "" : "not told apart";
+const untold = row => row.told_apart ? "" : "not significant";
 
 const layers = figures.fewer_layers;
 byId("layers-part").hidden = layers.length === 0;

@@ -166,10 +166,10 @@ for (const method of methods) {
     item.append(method);
 }
 byId("plot-note").textContent =
-    "Better is up and to the left. Disc: an exact method; triangle: its nearest layers, or an early end; diamond: an " +
-    "approximation. Bars: half of a setting's frames; where bars overlap, times do not tell which setting is faster. Line and " +
-    "outlined marks: the Pareto front. Point at a mark for its figures; select it to see its picture as B. Select a method's " +
-    "name to hide it.";
+    "Better is up and to the left. A disc is an exact method, a triangle its nearest layers or an early end, and a diamond an " +
+    "approximation. A bar has half of a setting's frames. Settings with overlapping bars are equally fast. The line and the " +
+    "outlined marks are the Pareto front. Point at a mark for its figures. Select it to see its picture as B. Select a " +
+    "method's name to hide it.";
 for (const choice of document.getElementsByName("axis"))
     choice.addEventListener("change", () => {
         plotted.axis = choice.value;
@@ -177,13 +177,13 @@ for (const choice of document.getElementsByName("axis"))
         drawPlot();
     });
 byId("front-note").textContent =
-    `Marked: nothing measured is both as fast and as accurate. Times count as equal within ${percent(figures.equally_fast - 1)} and ` +
-    `where the spreads overlap, and so does what is above ${figures.psnr_enough} dB, less than a step of 16 bits. ±: half of the frames differ from the median ` +
-    "by no more.";
+    `Marked settings: no other setting is both as fast and as accurate. Times count as equal within ${percent(figures.equally_fast - 1)}, ` +
+    `or if the spreads overlap. Errors count as equal above ${figures.psnr_enough} dB, which is less than a step of 16 bits. ` +
+    "±: half of the frames differ from the median by no more.";
 byId("uncertain").hidden = figures.typical_spread <= figures.equally_fast - 1;
 byId("uncertain").textContent =
-    `The times are uncertain: those of half the settings spread by ${percent(figures.typical_spread)} and more. Smaller differences ` +
-    "mean nothing. Measure again when the machine does nothing else, or with more --frames.";
+    `The times are uncertain: half of the settings have a spread of ${percent(figures.typical_spread)} or more. Ignore smaller ` +
+    "differences. Measure again when the machine is idle, or with more --frames.";
 window.addEventListener("resize", drawPlot);
 drawPlot();
 
