@@ -103,8 +103,8 @@ bool sort_one(const cellist::Device& device, const Options& options, std::size_t
 bool run(const Options& options) {
     const cellist::Device device = options.device.empty() ? cellist::Device::choose()
                                                           : cellist::Device::choose(options.device);
-    std::printf("%zu keys with payloads, %s lists, %s\n", options.keys,
-                name_of(options.storage), device.info().name.c_str());
+    std::printf("%zu keys with payloads, %s lists, %s\n", options.keys, name_of(options.storage),
+                device.info().name.c_str());
     std::printf("%-11s %9s %8s %8s %8s %8s %10s %10s %8s  %s\n", "keys", "total ms", "sample",
                 "insert", "sort", "pack", "M keys/s", "std::sort", "longest", "result");
     bool equal = true;

@@ -143,8 +143,7 @@ bool run(const Options& options) {
     std::fprintf(screen, "device      %s\n", device.info().name.c_str());
     std::fprintf(screen, "triangles   %zu, in %s cells, %s: %llu entries, %.1f MB\n",
                  triangles.size(), grid.entries().shape().to_string().c_str(),
-                 name_of(options.storage),
-                 static_cast<unsigned long long>(report.stored),
+                 name_of(options.storage), static_cast<unsigned long long>(report.stored),
                  static_cast<double>(grid.entries().pool_bytes()) * 1e-6);
     if (!options.mesh.empty())
         std::fprintf(screen, "mesh        triangles: %zu%s\n", mesh.triangles.size(),
