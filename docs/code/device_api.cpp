@@ -40,7 +40,26 @@ kernel void scatter(CELLIST_LISTS(Entry, entries), const Settings settings)
     }
 }
 
-// A function that works on a container takes it as CELLIST_LISTS and is given CELLIST_PASS.
+// A reservation: one entry for each cell of a row, with all nodes taken at once if the host says so.
+kernel void fill_rows(CELLIST_LISTS(Entry, entries), uint width)
+{
+    cellist_reservation nodes = cellist_reserve(entries, width);
+    for (uint x = 0; x < width; ++x) {
+        Entry entry = { .distance = x };
+        cellist_link(entries, cellist_cell2(entries, x, get_global_id(0)), nodes, entry);
+    }
+}
+
+// Every work-item of the group gets here, those behind the end as well.
+kernel void insert_together(CELLIST_LISTS(Entry, entries), uint count)
+{
+    local cellist_group group;
+    uint i = get_global_id(0);
+    Entry entry = { .distance = i };
+    cellist_insert_all(entries, group, i < count, i % cellist_cells(entries), entry);
+}
+
+// A function declares a container with CELLIST_LISTS; its caller passes it with CELLIST_PASS.
 float reach(CELLIST_LISTS(Entry, entries), uint cell)
 {
     float reach = 0;
