@@ -40,25 +40,6 @@ kernel void scatter(CELLIST_LISTS(Entry, entries), const Settings settings)
     }
 }
 
-// A reservation: one entry for each cell of a row, with all nodes taken at once if the host says so.
-kernel void fill_rows(CELLIST_LISTS(Entry, entries), uint width)
-{
-    cellist_reservation nodes = cellist_reserve(entries, width);
-    for (uint x = 0; x < width; ++x) {
-        Entry entry = { .distance = x };
-        cellist_link(entries, cellist_cell2(entries, x, get_global_id(0)), nodes, entry);
-    }
-}
-
-// Every work-item of the group gets here, those behind the end as well.
-kernel void insert_together(CELLIST_LISTS(Entry, entries), uint count)
-{
-    local cellist_group group;
-    uint i = get_global_id(0);
-    Entry entry = { .distance = i };
-    cellist_insert_all(entries, group, i < count, i % cellist_cells(entries), entry);
-}
-
 // A function declares a container with CELLIST_LISTS; its caller passes it with CELLIST_PASS.
 float reach(CELLIST_LISTS(Entry, entries), uint cell)
 {
@@ -109,12 +90,5 @@ int main() {
     check(reaches.download() == reach, "the reaches");
     check(nearest_sums.download() == nearest_sum, "the sums of the nearest");
 
-    cellist::Kernel fill_rows(device, source, "fill_rows", entries, cellist::type<scene::Settings>);
-    check(entries.build(fill_rows, 8, cl_uint{20}).stored == 160, "the rows");
-    check(entries.lengths().nonempty_cells == 160, "a cell for each");
-    cellist::Kernel together(device, source, "insert_together", entries,
-                             cellist::type<scene::Settings>);
-    check(entries.build(together, cellist::Range::padded(1000), cl_uint{1000}).stored == 1000,
-          "what was inserted together");
     std::cout << "device API: ok\n";
 }
