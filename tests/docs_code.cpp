@@ -1,6 +1,6 @@
-// The code in the README and in docs/ is quoted from programs that are compiled and run. A block of
-// C++ or OpenCL C stands behind a line `<!-- code: path -->`; its lines follow one another in that
-// file, apart from indentation.
+// The README and docs/ quote code from programs that are compiled and run. A line
+// `<!-- code: path -->` precedes each block of C++ or OpenCL C and names its file. The file must
+// contain the block's lines in sequence, apart from indentation.
 
 #include <algorithm>
 #include <filesystem>

@@ -28,14 +28,14 @@ int main() {
                                    {.overflow = cellist::Overflow::drop, .capacity_nodes = 40'000});
     cellist::Kernel sample(device, source, "sample", samples);
 
-    keys.upload_async(host);  // host must stay as it is until the upload is done
+    keys.upload_async(host);  // keep host unchanged until the upload completes
     cellist::Pending<cellist::BuildReport> built = samples.build_async(sample, 50'000, keys);
     samples.sort_async(&Sample::key);
     cellist::Pending<cellist::Lengths> lengths = samples.lengths_async();
-    // ... work of the host ...
+    // ... the host does other work ...
     std::cout << built.get().dropped << " dropped, longest list " << lengths.get().longest << '\n';
 
-    // Your own queue, of the same context, beside the library's.
+    // Your own queue in the same context, next to the library's queue.
     const auto cl_device = device.queue().getInfo<CL_QUEUE_DEVICE>();
     const cl::CommandQueue own_queue(device.context(), cl_device);
     cl::Event copied;
@@ -43,9 +43,9 @@ int main() {
                                  host.data(), nullptr, &copied);
     own_queue.flush();
 
-    device.enqueue_wait({copied});  // what the library enqueues next starts after this
+    device.enqueue_wait({copied});  // the library's next commands start after this event
     samples.build(sample, 50'000, keys);
-    cl::Event done = device.enqueue_marker();  // completes after all that is enqueued
+    cl::Event done = device.enqueue_marker();  // completes after all enqueued work
     done.wait();
     check(samples.lengths().total == 40'000, "the pool is full");
     std::cout << "asynchronous: ok\n";

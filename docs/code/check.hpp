@@ -2,7 +2,7 @@
 
 #include <iostream>
 
-/// Prints what went wrong and fails the program.
+/// Prints the failed check and ends the program with an error.
 inline void check(bool condition, const char* what) {
     if (condition) return;
     std::cerr << "failed: " << what << '\n';

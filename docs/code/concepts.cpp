@@ -34,7 +34,7 @@ kernel void lowest(CELLIST_LISTS(Particle, bins), global float* lowest)
 constexpr auto nearest_source = R"(
 #include <cellist/lists.clh>
 
-// The distance of each particle to the nearest other one, where that is less than the size of a cell.
+// The distance from each particle to its nearest neighbour, or cell_size if there is none nearer.
 kernel void nearest(CELLIST_LISTS(Particle, bins), global const Particle* particles, float cell_size,
                     global float* distances)
 {
@@ -77,7 +77,7 @@ int main() {
     check(result[0] == 0.5f, "the lowest particle of the first bin");
     check(lengths.total == bins.download().records().size(), "the number of binned particles");
 
-    // Two particles in cells side by side, and two in one place.
+    // Two particles in neighbouring cells, and two at one position.
     cellist::Buffer<Particle> few(
         device, std::vector<Particle>{{1, 1, 1, 0}, {1, 1, 4, 1}, {9, 9, 9, 2}, {9, 9, 9, 3}});
     bins.build(bin, few.size(), few, 4.0f);
@@ -86,13 +86,13 @@ int main() {
     nearest.run(few.size(), bins, few, 4.0f, distances);
     check(distances.download() == std::vector<cl_float>{3, 3, 0, 0}, "the nearest neighbours");
 
-    // Particles outside of the grid are counted, never stored.
+    // Particles outside the grid are counted but never stored.
     cellist::BuildReport report = bins.build(bin, particles.size(), particles, 1.0f);
     std::cout << report.stored << " of " << report.attempted << " particles lie in the grid, "
               << report.rejected << " outside\n";
     check(report.rejected > 0 && report.attempted == host.size(), "the report");
 
-    // Sorted by distance from the origin; equal distances by x, y, z, id.
+    // Sort by distance from the origin; order equal distances by x, y, z, id.
     bins.sort_by("record.x * record.x + record.y * record.y + record.z * record.z");
     auto sorted = bins.download();
     for (std::uint64_t cell = 0; cell < sorted.cells(); ++cell) {

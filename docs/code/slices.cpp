@@ -32,7 +32,7 @@ int main() {
     cellist::Device device = cellist::Device::choose();
     cellist::Buffer<cl_float> least(device, 1000);
 
-    // 12 MB of nodes through a pool of 1 MiB.
+    // 12 MB of nodes pass through a pool of 1 MiB.
     cellist::Lists<Sample> samples(device, {1000}, {.budget_bytes = 1 << 20});
     cellist::Kernel sample(device, source, "sample", samples);
     cellist::Kernel take_least(device, source, "least", samples);
@@ -48,7 +48,7 @@ int main() {
     check(report.stored == 1'000'000 && report.dropped == 0, "every record had its turn");
     check(slices > 10, "in more than ten slices");
 
-    // The same in one piece.
+    // The same records in one build.
     cellist::Lists<Sample> whole(device, {1000});
     cellist::Buffer<cl_float> expected(device, 1000);
     whole.build(sample, 1'000'000);

@@ -15,19 +15,20 @@
 
 namespace cellist {
 
-/// `size()` elements of T in device memory. T has the layout that the kernels expect. Movable, not
-/// copyable; every use of a moved-from buffer throws Error. Every function that uses the device
-/// throws OpenClError if an OpenCL call fails.
+/// `size()` elements of T in device memory. T must have the layout that the kernels expect.
+/// Movable, not copyable. Using a moved-from buffer throws Error. Every function that uses the
+/// device throws OpenClError if an OpenCL call fails.
 template <class T>
 class Buffer {
     static_assert(std::is_trivially_copyable_v<T>, "a Buffer holds trivially copyable elements");
 
 public:
-    /// Room for `size` elements, uninitialised. Throws MemoryError if that is more than the device
-    /// can allocate at once.
+    /// Allocates `size` uninitialised elements. Throws MemoryError if they exceed the device's
+    /// largest allocation.
     Buffer(const Device& device, std::size_t size) : Buffer(device.state(), size) {}
 
-    /// A copy of `elements`. Throws the same. Blocks until they are copied.
+    /// Allocates a copy of `elements`. Throws MemoryError as above. Blocks until the copy is
+    /// complete.
     Buffer(const Device& device, std::span<const T> elements) : Buffer(device, elements.size()) {
         memory_.write(elements.data(), elements.size_bytes());
     }
@@ -37,15 +38,15 @@ public:
     [[nodiscard]] std::size_t size() const { return memory().size_bytes() / sizeof(T); }
     [[nodiscard]] const cl::Buffer& cl() const { return memory().cl(); }
 
-    /// A copy of the elements, after everything that was enqueued before. Throws MemoryError if the
-    /// host has no memory for it. Blocks.
+    /// Returns a copy of the elements, after all work that was enqueued before. Throws MemoryError
+    /// if the host has no memory for it. Blocks.
     [[nodiscard]] std::vector<T> download() const {
         std::vector<T> elements = detail::host_memory<T>(size());
         memory_.read(elements.data(), elements.size() * sizeof(T));
         return elements;
     }
 
-    /// The same without blocking.
+    /// Like download(), but does not block.
     [[nodiscard]] Pending<std::vector<T>> download_async() const {
         struct State {
             std::vector<T> elements;
@@ -60,8 +61,8 @@ public:
                 }};
     }
 
-    /// Copies `elements` to the first of the buffer. They must stay until the event has completed.
-    /// Throws Error if they are more than size(). Does not block.
+    /// Copies `elements` to the start of the buffer. Keep them unchanged until the event completes.
+    /// Throws Error if there are more than size(). Does not block.
     cl::Event upload_async(std::span<const T> elements) {
         if (elements.size() > size())
             throw Error("a buffer of " + std::to_string(size()) + " elements has no room for " +
@@ -69,7 +70,7 @@ public:
         return memory_.write_later(elements.data(), elements.size_bytes());
     }
 
-    /// Sets every element to `value`. Blocks only where sizeof(T) is no power of two up to 128.
+    /// Sets every element to `value`. Does not block if sizeof(T) is a power of two up to 128.
     void fill(const T& value) { memory_.fill(&value, sizeof(T), size() * sizeof(T)); }
 
     /// @private

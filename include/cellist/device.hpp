@@ -15,7 +15,7 @@ namespace detail {
 struct DeviceState;
 }
 
-/// What a device says about itself.
+/// The properties of a device.
 struct DeviceInfo {
     std::string name;
     std::string platform;
@@ -36,27 +36,32 @@ struct DeviceInfo {
     bool one_thread_per_work_group = false;
 };
 
-/// An OpenCL device with a context, a queue and a cache of built programs. Everything that is made
-/// from a Device shares them, and stays valid after the Device object is gone. Movable, not
-/// copyable; every use of a moved-from Device throws Error. Every function that calls OpenCL throws
-/// OpenClError if the call fails. Several threads may use one Device and objects made from it, each
-/// object from one thread at a time.
+/// An OpenCL device with a context, a queue and a cache of built programs. Objects that are made
+/// from a Device share these, and stay valid after the Device object is destroyed. Movable, not
+/// copyable. Using a moved-from Device throws Error. Every function that calls OpenCL throws
+/// OpenClError if the call fails.
+///
+/// Several threads may use one Device and the objects made from it, if each object is used by one
+/// thread at a time.
 class Device {
 public:
-    /// The device that the environment variable CELLIST_DEVICE names, as in choose(selector); if it
-    /// is not set or empty, the first GPU, else the first device. Throws Error if there is none.
-    /// Its queue is in order and does not profile, which would double the time of small builds.
+    /// Returns the device that the environment variable CELLIST_DEVICE names, as in
+    /// choose(selector). If the variable is unset or empty, returns the first GPU, or else the
+    /// first device. Throws Error if there is none. The queue is in order. It does not profile,
+    /// because profiling would double the time of small builds.
     [[nodiscard]] static Device choose();
 
-    /// The device with this index in all(), or the first whose name or platform contains the
-    /// selector, without regard to case. Throws Error, listing the devices, if there is none.
+    /// Returns the device with this index in all(), or the first whose name or platform contains
+    /// the selector, in any case. Throws Error if there is none; the message lists the devices.
     [[nodiscard]] static Device choose(std::string_view selector);
 
-    /// Works on the caller's own context and queue. Several Devices may share a context: where a
-    /// kernel of one uses Lists or Buffers of another, it runs in order with the commands of the
-    /// other's queue. In an out-of-order queue, every command of the library starts after all that
-    /// were enqueued before it, including the caller's. Events have times where the queue was made
-    /// with CL_QUEUE_PROFILING_ENABLE. Throws Error if the queue belongs to another context.
+    /// Works on the caller's own context and queue. Throws Error if the queue belongs to another
+    /// context. Events have times if the queue was made with CL_QUEUE_PROFILING_ENABLE.
+    ///
+    /// Several Devices may share a context. If a kernel of one uses Lists or Buffers of another, it
+    /// runs in order with the commands of the other's queue. In an out-of-order queue, every
+    /// command of the library starts after all commands that were enqueued before it, including the
+    /// caller's.
     Device(cl::Context context, cl::CommandQueue queue);
 
     Device(Device&&) noexcept;
@@ -65,21 +70,20 @@ public:
     Device& operator=(const Device&) = delete;
     ~Device();
 
-    /// All devices of all platforms, in the order that choose() counts them in. Empty if there is
-    /// no platform.
+    /// Returns all devices of all platforms, in the order of choose()'s index. Empty if there is no
+    /// platform.
     [[nodiscard]] static std::vector<DeviceInfo> all();
 
     [[nodiscard]] const DeviceInfo& info() const;
     [[nodiscard]] const cl::Context& context() const;
     [[nodiscard]] const cl::CommandQueue& queue() const;
 
-    /// Blocks until everything that was enqueued has run.
+    /// Blocks until all enqueued work has run.
     void finish() const;
 
-    /// What is enqueued from now on starts after these events, of any queue of the context, have
-    /// completed. Does not block.
+    /// Makes later commands start after these events, of any queue of the context. Does not block.
     void enqueue_wait(const std::vector<cl::Event>& events) const;
-    /// An event that completes when everything that was enqueued has run. Does not block.
+    /// Returns an event that completes after all enqueued work. Does not block.
     [[nodiscard]] cl::Event enqueue_marker() const;
 
     /// @private

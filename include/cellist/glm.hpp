@@ -1,10 +1,10 @@
 #pragma once
-// GLM's vectors and matrices as members of adapted structs.
+// Allows GLM's vectors and matrices as members of adapted structs.
 //
-// GLM packs its types: vec3 takes 12 bytes and every type is aligned as its scalar. The kernel sees
-// structs of the same layout, which cellist/glm.clh defines: glm::vec3 is a cellist_vec3 with
-// members x, y, z, and cellist_float3(v) makes a float3 of it; glm::mat4 is a cellist_mat4 of four
-// cellist_vec4 columns. Needs GLM's default, packed types: not GLM_FORCE_DEFAULT_ALIGNED_GENTYPES.
+// GLM packs its types: vec3 takes 12 bytes, and each type has the alignment of its scalar. Kernels
+// see structs of the same layout, which cellist/glm.clh defines. glm::vec3 becomes a cellist_vec3
+// with members x, y, z, and cellist_float3(v) converts it to a float3. glm::mat4 becomes a
+// cellist_mat4 with four cellist_vec4 columns. GLM_FORCE_DEFAULT_ALIGNED_GENTYPES is not supported.
 
 #include <string>
 #include <type_traits>
@@ -23,7 +23,7 @@ namespace cellist {
 
 namespace detail {
 
-/// What stands before "vec" and "mat": "", "i", "u" or "d"; nullptr for other scalars.
+/// The prefix of "vec" and "mat" for a scalar: "", "i", "u" or "d"; nullptr for other scalars.
 template <class T>
 constexpr const char* glm_prefix() {
     if constexpr (std::is_same_v<T, float>)

@@ -12,16 +12,16 @@
 
 namespace cellist {
 
-/// The lists of all cells in host memory, one behind the other. What is taken from a temporary is a
-/// copy, so `for (const Hit& hit : hits.download()[{640, 360}])` is sound.
+/// The lists of all cells in host memory, as contiguous lists. Accessors of a temporary return
+/// copies, so `for (const Hit& hit : hits.download()[{640, 360}])` is safe.
 template <class T>
 class HostLists {
 public:
     HostLists(const Shape& shape, std::vector<std::uint64_t> offsets, std::vector<T> records)
         : shape_(shape), offsets_(std::move(offsets)), records_(std::move(records)) {}
 
-    /// The records of the cell at a position; missing coordinates are 0, as on the device. Throws
-    /// Error if it is outside of the shape.
+    /// Returns the records of the cell at a position. Missing coordinates are 0, as on the device.
+    /// Throws Error if the position is outside the shape.
     [[nodiscard]] std::span<const T> operator[](
         std::initializer_list<std::uint64_t> position) const& {
         return cell(shape_.cell(position));
@@ -30,7 +30,8 @@ public:
         return std::move(*this).cell(shape_.cell(position));
     }
 
-    /// The records of the cell with an index in 0 ... cells() - 1. Throws Error if there is none.
+    /// Returns the records of a cell by its index, 0 ... cells() - 1. Throws Error for other
+    /// indices.
     [[nodiscard]] std::span<const T> cell(std::uint64_t index) const& {
         if (index >= cells())
             throw Error("cell " + std::to_string(index) + " is outside of the shape " +
@@ -45,7 +46,8 @@ public:
 
     [[nodiscard]] const Shape& shape() const { return shape_; }
     [[nodiscard]] std::uint64_t cells() const { return shape_.cells(); }
-    /// cells() + 1 offsets into records(): the lists in compressed-row form.
+    /// The cells() + 1 offsets into records(), in compressed-sparse-row form. Cell c has the
+    /// records offsets()[c] ... offsets()[c + 1] - 1.
     [[nodiscard]] const std::vector<std::uint64_t>& offsets() const& { return offsets_; }
     [[nodiscard]] std::vector<std::uint64_t> offsets() && { return std::move(offsets_); }
     [[nodiscard]] const std::vector<T>& records() const& { return records_; }

@@ -16,26 +16,30 @@ namespace cellist {
 /// The OpenCL C source of a program.
 struct Source {
     std::string text = {};
-    /// Stands before the line numbers in the compiler's messages.
+    /// The file name in the compiler's messages.
     std::string file_name = "kernel";
-    /// Added to the build options, which start with "-cl-std=CL1.2 -cl-kernel-arg-info". Macros in
-    /// these options do not change the library's own text.
+    /// Build options, after "-cl-std=CL1.2 -cl-kernel-arg-info". Macros in these options do not
+    /// change the library's own text.
     std::string options = {};
 };
 
-/// A kernel from the user's source, built for a device. A device keeps the last 128 programs, by
-/// source, types and options, and builds each of them once. A source that includes the user's own
-/// files, by #include or by the option "-include", is built for every Kernel, with the current
-/// files. `#include <cellist/lists.clh>` and `<cellist/glm.clh>` need no path and do not count.
-/// Movable, not copyable; every use of a moved-from Kernel throws Error.
+/// A kernel from the user's source, built for a device. Movable, not copyable. Using a moved-from
+/// Kernel throws Error.
+///
+/// A device caches the last 128 programs, by source, types and options. It does not cache a source
+/// that includes the user's own files, by #include or by the option "-include". Each Kernel builds
+/// such a source again from the current files. `#include <cellist/lists.clh>` and
+/// `<cellist/glm.clh>` need no path and do not prevent caching.
 class Kernel {
 public:
-    /// Builds `code` and takes the kernel called `name` from it. `uses` names the types that the
-    /// source may use: containers, and cellist::type<T> for other adapted structs. Throws
-    /// OpenClError with the compiler's log if the source does not build, if a struct's layout on
-    /// the device differs, and if OpenCL C reserves the name of a struct or member. Throws Error if
-    /// the source is empty, if two structs have the same name, or if the device lacks doubles that
-    /// a struct has. Blocks while it compiles.
+    /// Builds `code` and takes the kernel `name` from it. `uses` names the types that the source
+    /// may use: containers, and cellist::type<T> for other adapted structs. Blocks while it
+    /// compiles.
+    ///
+    /// Throws OpenClError with the compiler's log if the source does not build or has no such
+    /// kernel, if the device lays a struct out differently, or if OpenCL C reserves the name of a
+    /// struct or member. Throws Error if the source is empty, if two structs have the same name, or
+    /// if a struct has doubles and the device does not.
     template <class... Uses>
     Kernel(const Device& device, const Source& code, const std::string& name, const Uses&... uses)
         : Kernel(device.state(), code, name, definitions_of(uses...)) {}
@@ -50,16 +54,17 @@ public:
     Kernel& operator=(const Kernel&) = delete;
     ~Kernel();
 
-    /// Enqueues the kernel over a range. Does not block. Kernels insert inside of build() only:
-    /// elsewhere containers are read-only, and Lists::validate() counts the inserts that were
-    /// refused.
+    /// Enqueues the kernel over a range. Does not block, except to finish a pending build of an
+    /// argument. It then throws what that build throws.
     ///
-    /// Arguments in the kernel's order: scalars, adapted structs, Buffer, Lists, cl::Buffer,
-    /// cl::Image, cl::Pipe, cl::Sampler, LocalMemory. Throws Error if their number, or the kind,
-    /// size, type or context of one does not fit the kernel's parameters; signs and the widths of
-    /// vectors are not compared. Throws Error for a Range::local that is only partly 0, and for
-    /// more local memory than the device has. Throws OpenClError if the launch fails. An argument
-    /// with a pending build ends that build first, and then throws what the build throws.
+    /// Pass arguments in the order of the parameters: scalars, adapted structs, Buffer, Lists,
+    /// cl::Buffer, cl::Image, cl::Pipe, cl::Sampler, LocalMemory. Throws Error if their number,
+    /// kind, size, type or context does not fit the parameters. Signs and the widths of vectors are
+    /// not compared. Throws Error if only some extents of Range::local are 0, and if the device has
+    /// too little local memory. Throws OpenClError if the launch fails.
+    ///
+    /// Kernels can insert only during build(). Outside a build, containers are read-only, and
+    /// Lists::validate() counts the refused inserts.
     ///
     /// Lists and Buffers may belong to a Device with another queue of the same context. The kernel
     /// then waits for the commands that are on that queue, and later commands there wait for the

@@ -25,10 +25,10 @@
 
 namespace cellist {
 
-/// The lists of all cells in device memory, one after the other: the records of cell c, or a member
-/// of each, are records[offsets[c]] ... records[offsets[c + 1] - 1]. There are offsets[cells]
-/// records. The buffer may have room for more, if the lists were packed while their build was
-/// pending.
+/// The lists of all cells in device memory, as contiguous lists. Cell c has the records (or one
+/// member of each) records[offsets[c]] ... records[offsets[c + 1] - 1], and offsets[cells] is the
+/// number of records. The buffer may have room for more records if the lists were packed while
+/// their build was pending.
 template <class T>
 struct Packed {
     Buffer<cl_uint> offsets;  ///< cells + 1
@@ -51,33 +51,32 @@ struct Element<M[count]> {
 
 /// A list of records T for each cell of a shape, in device memory.
 ///
-/// Kernels fill the lists concurrently, with cellist_insert; see kernels/cellist/lists.clh for what
-/// they can do. The heads take 4 bytes a cell, and a node takes the record and 4 bytes, rounded up
-/// to the alignment of both.
+/// Kernels fill the lists concurrently, with cellist_insert; kernels/cellist/lists.clh has every
+/// call that kernels may make. In Storage::linked, heads take 4 bytes per cell. A node takes the
+/// record rounded up to 4 bytes, a 4-byte link, and padding to its alignment. docs/storages.md has
+/// the other storages.
 ///
-/// Owned by value, movable, not copyable; every use of moved-from Lists throws Error. Work for the
-/// device is enqueued on its queue. Calls that return results block until they have them. The
-/// others do not block, with one exception: a call that uses lists with a pending build finishes
-/// that build first, and blocks, if it may still change the lists. Under Overflow::drop a pending
-/// build cannot change them, unless the storage is automatic.
+/// Owned by value: movable, not copyable. Using moved-from Lists throws Error. The library enqueues
+/// its work on the device's queue. Calls that return results block until they have them. Other
+/// calls do not block, with one exception: a call that uses lists with a pending build may have to
+/// finish that build first. Under Overflow::drop it need not, unless the storage is automatic.
 ///
-/// All functions but shape() and those that only report sizes throw:
+/// All functions except shape() and those that report sizes throw:
 /// - OpenClError if an OpenCL call fails.
-/// - MemoryError if a result exceeds the memory of the host, the device's largest allocation or
-///   the budget; see out_of_memory().
-/// - what a pending build throws, if the function ends that build.
-/// - Error if the function that inserts uses the lists that it fills.
+/// - MemoryError if the host, the device's largest allocation or the budget has no room for the
+///   result or the buffers; see out_of_memory().
+/// - what a pending build throws, if the function finishes that build.
+/// - Error if a build's function uses the lists that the build fills.
 ///
-/// Where a function throws more than that, its comment says so. After an exception from a build or
-/// from clear() the lists are empty; other functions leave them as they are, unless the comment
-/// says otherwise.
+/// A comment names further exceptions. After an exception from a build or from clear(), the lists
+/// are empty. Other functions keep the records, unless the comment says otherwise.
 template <class T>
 class Lists {
     static_assert(detail::Adapted<T>, "adapt the record with CELLIST_STRUCT first");
 
 public:
-    /// Empty lists. Throws MemoryError if the shape or the capacity exceeds a limit of the device
-    /// or of the budget, and Error if the options contradict each other.
+    /// Makes empty lists. Throws MemoryError if the shape or the capacity exceeds a limit of the
+    /// device or the budget, and Error if the options contradict each other.
     Lists(const Device& device, const Shape& shape, const ListsOptions& options = {})
         : core_("a Lists object",
                 std::make_shared<detail::ListsCore>(device.state(), detail::definitions_of<T>(),
@@ -88,18 +87,18 @@ public:
     Lists& operator=(const Lists&) = delete;
     ~Lists() = default;
 
-    /// Fills the lists anew: clears them, then runs `kernel(lists, args...)` over `range`. The
-    /// lists are the kernel's first parameters; `args` are the rest. The old records are gone when
-    /// the kernel runs: run a kernel that reads them before the build.
+    /// Builds the lists: clears them, then runs `kernel(lists, args...)` over `range`. The lists
+    /// are the kernel's first argument; `args` are the rest. Run kernels that read the old records
+    /// before the build.
     ///
-    /// Other containers among `args` are read-only. If the kernel inserts into one, the build
-    /// throws Error with a message that names the container. Throws Error if a kernel does not
-    /// insert the same records in a pass that needs them again.
+    /// If the pool is too small, the overflow policy decides. Overflow::grow enlarges it to the
+    /// exact demand and runs the kernel again. Overflow::stop throws OverflowError, and so does a
+    /// demand over the budget or the device's limit. Overflow::drop keeps the records that fit.
     ///
-    /// If the pool is too small, the overflow policy decides: grow enlarges it to the exact demand
-    /// and runs the kernel again, which must insert the same records again; stop and a demand over
-    /// the budget or the device's limit throw OverflowError; drop keeps what fits. After an
-    /// exception the lists are empty. Blocks until the report is there.
+    /// The kernel must insert the same records in every run. Throws Error if a run finds that it
+    /// did not. Other containers among `args` are read-only: if the kernel inserts into one, the
+    /// build throws Error, and the message names the container. Blocks until the report is
+    /// available.
     template <class... Args>
     BuildReport build(Kernel& kernel, const Range& range, const Args&... args) {
         return core_->build([&] {
@@ -110,17 +109,18 @@ public:
         });
     }
 
-    /// The same for several inserting kernels: `insert` enqueues all of them with Kernel::run, and
-    /// is called again after the pool has grown. `insert` cannot build, clear, sort or read these
-    /// lists: each of these throws Error.
+    /// Builds the lists with several kernels. `insert` enqueues them all with Kernel::run. The
+    /// build calls it once for each run of the kernels. `insert` cannot build, clear, sort or read
+    /// these lists: each of these throws Error.
     BuildReport build(std::invocable auto&& insert) { return core_->build(std::ref(insert)); }
 
-    /// Starts the same build. Blocks only for an earlier build of these lists that is still
-    /// pending. The event completes after the first pass; get() runs more passes if the pool was
-    /// too small, or throws. Until then the lists are incomplete, unless the policy is
-    /// Overflow::drop: a call that uses them finishes the build itself, blocks, and throws what
-    /// get() would throw. The kernel and the memory among the arguments must stay alive until then.
-    /// The Lists object may be destroyed before: get() still returns the report.
+    /// Starts the same build. The event completes after the first pass. get() runs more passes if
+    /// the pool was too small, or throws. Blocks only for an earlier pending build of these lists.
+    ///
+    /// Until get(), the lists are incomplete, unless the policy is Overflow::drop. A call that uses
+    /// them finishes the build itself: it blocks, and throws what get() would throw. Keep the
+    /// kernel and the memory among the arguments alive until then. You may destroy the Lists object
+    /// earlier; get() still returns the report.
     template <class... Args>
     [[nodiscard]] Pending<BuildReport> build_async(Kernel& kernel, const Range& range,
                                                    const Args&... args) {
@@ -140,14 +140,17 @@ public:
                 [core = core_, build] { return finish(*build); }};
     }
 
-    /// Builds lists that are more than the pool may hold (by the budget, by the device's largest
-    /// allocation, by capacity_nodes unless the policy is to grow), a range of cells at a time.
-    /// `insert` enqueues the kernels as in build(): once to count, then for each slice, of which it
-    /// stores the records. `read` is called for each slice, in order, with the lists of its cells
-    /// in place and all others empty. The kernels must insert the same records every time. At the
-    /// end the lists are empty. Throws OverflowError if a single list does not fit and the policy
-    /// is not to drop, and Error if the kernels insert other records than they counted. `read`
-    /// cannot build the lists: that throws Error. Takes 8 bytes a cell for the counts. Blocks.
+    /// Builds more records than the pool may hold, a range of cells at a time. The budget, the
+    /// device's largest allocation and, unless the policy is to grow, capacity_nodes bound a slice.
+    ///
+    /// `insert` enqueues the kernels as in build(). It runs once to count the records, then for
+    /// each slice to store them. The kernels must insert the same records every time. `read` runs
+    /// for each slice, in order. It finds the lists of the slice's cells; all other lists are
+    /// empty. `read` cannot build the lists: that throws Error. At the end all lists are empty.
+    ///
+    /// Throws OverflowError if a single list does not fit and the policy is not to drop. Throws
+    /// Error if the kernels insert other records than they counted. Takes 8 bytes per cell for the
+    /// counts. Blocks.
     BuildReport build_slices(std::invocable auto&& insert,
                              std::invocable<const Slice&> auto&& read) {
         return core_->build_slices(std::ref(insert), std::ref(read));
@@ -157,43 +160,42 @@ public:
     /// policy.
     void clear() { core_->clear(); }
 
-    /// Sorts every list by a scalar member: cellist_for_each then visits the least first, or the
-    /// greatest. Records with equal keys are ordered by their remaining members, ascending, in
-    /// order of declaration, so the result depends on the records alone and not on the order of
-    /// insertion. Floats are ordered -inf < ... < -0 < +0 < ... < +inf < NaN. Lists have any
-    /// length.
+    /// Sorts every list, of any length, by a scalar member: cellist_for_each then visits the least
+    /// record first, or the greatest. The remaining members order records with equal keys,
+    /// ascending, in order of declaration. So the result depends only on the records, not on the
+    /// order of insertion. Floats are ordered -inf < ... < -0 < +0 < ... < +inf < NaN.
     ///
-    /// Linked lists move to a second pool, each in one piece; it is counted in pool_bytes() and
-    /// kept for the next sort. Lists of some hundred nodes or more need a second pool in the other
-    /// storages as well. Where the budget or the device has no memory for it, lists are sorted as
-    /// by sort_async().
+    /// Linked lists move to a second pool, each in one piece. pool_bytes() includes that pool, and
+    /// the next sort reuses it. In the other storages, only lists of some hundred nodes or more
+    /// need a second pool. Without memory for it, sort() works as sort_async() does.
     ///
-    /// Blocks until it is known how long the lists are. The first calls for a member compile
-    /// kernels. Throws Error where links lead in circles, out of the pool, or from several lists to
-    /// the same nodes, where offsets descend or leave the pool, or where the lists do not have as
-    /// many nodes as the last build stored. A sort without memory for more buffers checks nothing;
-    /// validate() checks more. Whatever fails, sound lists keep their records.
+    /// Blocks until the lengths of the lists are known. The first sort by a member compiles
+    /// kernels. Throws Error if links lead in circles, out of the pool, or from several lists to
+    /// the same nodes. Throws Error if offsets descend or leave the pool, or if the number of nodes
+    /// differs from that of the last build. A sort without memory for more buffers checks nothing;
+    /// validate() checks more. After any failure, sound lists keep their records.
     template <class M>
     cl::Event sort(M T::*member, Order order = Order::ascending) {
         return core_->sort(key_of(member, order), all_nodes);
     }
 
-    /// The same by an OpenCL C expression of `record`, of integer or float type, such as
-    /// "record.depth * record.depth". Throws OpenClError with the compiler's log if it does not
-    /// compile, and Error if it is more than one expression, or writes: commas outside of
-    /// parentheses, quoted text, directives, assignments, pointers and calls that write are
-    /// refused. No record is lost where its value differs from call to call, as after a division by
-    /// 0 or with get_global_id(). The lists are then in no particular order.
+    /// Sorts every list by an OpenCL C expression of `record` with an integer or float value, such
+    /// as "record.depth * record.depth". Throws OpenClError with the compiler's log if the
+    /// expression does not compile. Throws Error if it is more than one expression, or if it
+    /// writes. Refused are commas outside parentheses, quoted text, directives, assignments,
+    /// pointers, and calls that write.
     ///
-    /// The expression is your code, and runs inside the library's kernel. Undefined operations are
-    /// your risk: an index outside an array can end the process on a CPU.
+    /// No record is lost if the value differs between calls, for example after a division by 0 or
+    /// with get_global_id(). The lists are then in no particular order. The expression is your code
+    /// and runs inside the library's kernel. Undefined operations are your risk: an index outside
+    /// an array can end the process on a CPU.
     cl::Event sort_by(const std::string& expression, Order order = Order::ascending) {
         return core_->sort({expression, 64, order}, all_nodes);
     }
 
-    /// Sorts the first `count` nodes of every list only: those that sort() would put there. The
-    /// others follow in any order. Takes less time than sort() where lists are several times as
-    /// long; is the same otherwise.
+    /// Sorts only the first `count` nodes of every list: the nodes that sort() would put there. The
+    /// others follow in any order. Takes less time than sort() if lists are several times as long.
+    /// Otherwise the same as sort().
     template <class M>
     cl::Event partial_sort(M T::*member, std::uint32_t count, Order order = Order::ascending) {
         return core_->sort(key_of(member, order), count);
@@ -203,9 +205,9 @@ public:
         return core_->sort({expression, 64, order}, count);
     }
 
-    /// Sorts without blocking, and without a second pool: each list in its place, by one work-item,
-    /// which takes longer for most lists. Throws what sort_by() throws for an expression. For sound
-    /// lists only: where links lead in circles, it ends, and the lists may be anything.
+    /// Sorts without blocking and without a second pool. One work-item sorts each list in place,
+    /// which takes longer for most lists. Throws what sort_by() throws for an expression. Requires
+    /// sound lists: if links lead in circles, the sort ends, but the lists have undefined content.
     template <class M>
     cl::Event sort_async(M T::*member, Order order = Order::ascending) {
         return core_->sort_async(key_of(member, order));
@@ -214,9 +216,9 @@ public:
         return core_->sort_async({expression, 64, order});
     }
 
-    /// How long the lists are. Blocks.
+    /// Measures the lists. Blocks.
     [[nodiscard]] Lengths lengths() const { return lengths_async().get(); }
-    /// The same without blocking.
+    /// Like lengths(), but does not block.
     [[nodiscard]] Pending<Lengths> lengths_async() const {
         struct State {
             std::vector<cl_uint> lengths;
@@ -230,11 +232,11 @@ public:
                 }};
     }
 
-    /// A copy of all lists in host memory. Blocks.
+    /// Copies all lists to host memory. Blocks.
     [[nodiscard]] HostLists<T> download() const { return download_async().get(); }
-    /// The same. Does not block if the records take up to 256 MiB and fit into one allocation of
-    /// the device. While a build under Overflow::drop is pending, the number of records is not
-    /// known: the call copies the whole pool, and these limits are for the pool.
+    /// Like download(), but does not block if the records take up to 256 MiB and fit into one
+    /// device allocation. While a build under Overflow::drop is pending, the number of records is
+    /// unknown. The call then copies the whole pool, and these limits apply to the pool.
     [[nodiscard]] Pending<HostLists<T>> download_async() const {
         struct State {
             std::vector<cl_uint> offsets;
@@ -254,43 +256,44 @@ public:
                 }};
     }
 
-    /// A copy of all lists in device memory, one after the other, for kernels that leave the
-    /// container. Blocks only for a pending build that may still change the lists. While a build
-    /// under Overflow::drop is pending, the copy has room for capacity_nodes() records.
+    /// Copies all lists to plain device buffers, as contiguous lists, for kernels that do not use
+    /// the container. Blocks only for a pending build that may still change the lists. While a
+    /// build under Overflow::drop is pending, the copy has room for capacity_nodes() records.
     [[nodiscard]] Packed<T> pack() const { return pack<T, T>(""); }
-    /// The same for a single member, for readers that need only that member. Its type may be a
-    /// scalar, a vector, an adapted struct or an array; `cl_float[4]` gives
-    /// `Packed<std::array<cl_float, 4>>`.
+    /// Like pack(), for readers that need only one member. Its type may be a scalar, a vector, an
+    /// adapted struct or an array; `cl_float[4]` gives `Packed<std::array<cl_float, 4>>`.
     template <class M>
     [[nodiscard]] Packed<typename detail::Element<M>::type> pack(M T::*member) const {
         return pack<M, typename detail::Element<M>::type>(std::string(".") +
                                                           detail::member_name(member));
     }
 
-    /// Checks that every allocated node is reached from exactly one head, exactly once. Finds any
-    /// corruption of heads and links in time proportional to cells + nodes. Compares sums with
-    /// those of the last build, and counts inserts outside a build. Storage::counted compares the
-    /// offsets with the counts of the last build; Storage::fixed compares the counts with a hash of
-    /// those counts. So both find a word that has changed. Takes one bit of device memory a node in
-    /// Storage::linked, and 4 bytes a cell in Storage::counted. Blocks.
+    /// Checks that exactly one head reaches every allocated node, exactly once. Also counts inserts
+    /// outside a build. Finds any corruption of heads and links, in time proportional to cells +
+    /// nodes.
+    ///
+    /// Compares sums with those of the last build. Storage::counted compares the offsets with the
+    /// counts of the last build, and Storage::fixed compares the counts with their hash. So both
+    /// find a word that has changed. Takes one bit of device memory per node in Storage::linked,
+    /// and 4 bytes per cell in Storage::counted. Blocks.
     [[nodiscard]] Validation validate() const { return core_->validate()(); }
-    /// The same without blocking.
+    /// Like validate(), but does not block.
     [[nodiscard]] Pending<Validation> validate_async() const {
         std::function<Validation()> result = core_->validate();
         return {core_->marker(), [core = core_, result = std::move(result)] { return result(); }};
     }
 
     [[nodiscard]] const Shape& shape() const { return core_->shape(); }
-    /// Nodes in the pool.
+    /// Returns the number of nodes in the pool.
     [[nodiscard]] std::uint64_t capacity_nodes() const { return core_->capacity_nodes(); }
-    /// Device memory of every buffer that the container keeps: heads, nodes, counters, and the
-    /// buffers that sorts, downloads and builds keep for reuse. budget_bytes bounds it, except for
-    /// sums over the cells: 20 bytes for each 4,096 cells, and some hundred bytes.
+    /// Returns the device memory of all buffers that the container keeps: heads, nodes, counters,
+    /// and the buffers that sorts, downloads and builds keep for reuse. budget_bytes bounds it,
+    /// except for sums over the cells: 20 bytes for each 4,096 cells, and some hundred bytes.
     [[nodiscard]] std::uint64_t pool_bytes() const { return core_->pool_bytes(); }
-    /// The storage in use: in Storage::automatic the one of the last build.
+    /// Returns the storage in use. In Storage::automatic it is the storage of the last build.
     [[nodiscard]] Storage storage() const { return core_->storage_in_use(); }
-    /// A sentence for people: which storage the next build takes, and the measurements that speak
-    /// for it.
+    /// Returns a sentence for people: the storage of the next build, and the measurements that led
+    /// to it.
     [[nodiscard]] std::string storage_reason() const { return core_->storage_reason(); }
 
     /// @private
@@ -310,7 +313,7 @@ private:
     static const BuildReport& finish(detail::Build& build) {
         return detail::ListsCore::finish(build).front();
     }
-    /// The value of type M that `member` selects from each record.
+    /// Packs the value of type M that `member` selects from each record.
     template <class M, class E>
     Packed<E> pack(const std::string& member) const {
         static_assert(detail::KnownOnDevice<M> && sizeof(E) == sizeof(M));
@@ -340,12 +343,12 @@ std::array<BuildReport, count> reports(Build& build) {
 
 }  // namespace detail
 
-/// Fills several containers at once: `insert` enqueues the kernels that fill them with Kernel::run,
-/// and is called again when one of the pools has grown. A report for each container, in order.
-/// After an exception all of them are empty. Blocks.
+/// Builds several containers at once. `insert` enqueues the kernels that fill them with
+/// Kernel::run. The build calls it again if one of the pools has grown. Returns a report for each
+/// container, in order. After an exception all of them are empty. Blocks.
 ///
-/// The containers belong to Devices of one device and context: build() throws Error for others, and
-/// for a container that is named twice. It throws what Lists::build throws.
+/// The containers must belong to Devices with one device and context. Throws Error otherwise, and
+/// if a container is named twice. Also throws what Lists::build throws.
 ///
 ///     auto [near, far] = cellist::build([&] { sort_out.run(n, near_lists, far_lists, points); },
 ///                                       near_lists, far_lists);
@@ -356,7 +359,7 @@ std::array<BuildReport, sizeof...(T)> build(std::invocable auto&& insert, Lists<
         *detail::ListsCore::start_build({&lists.core()...}, std::ref(insert)));
 }
 
-/// Starts the same and does not block; see Lists::build_async. If one of the containers is
+/// Starts the same build and does not block; see Lists::build_async. If one of the containers is
 /// destroyed before get(), the others are empty and get() throws Error.
 template <class... T>
     requires(sizeof...(T) > 0)

@@ -1,7 +1,6 @@
 #pragma once
-// The OpenCL C++ bindings with the settings that cellist needs: exceptions, and interfaces up to
-// OpenCL 3.0. Include this instead of <CL/opencl.hpp>, or set the same macros before including
-// that.
+// Includes the OpenCL C++ bindings with the settings that cellist needs: exceptions, and interfaces
+// up to OpenCL 3.0. Include this header instead of <CL/opencl.hpp>, or set the same macros first.
 
 #if defined(CL_HPP_) && !defined(CL_HPP_ENABLE_EXCEPTIONS)
 #error "cellist needs CL_HPP_ENABLE_EXCEPTIONS: include <cellist/opencl.hpp> before <CL/opencl.hpp>"

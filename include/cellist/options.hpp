@@ -10,7 +10,7 @@
 
 namespace cellist {
 
-/// What a build does when the pool is full.
+/// The overflow policy: what a build does when the pool is full.
 enum class Overflow {
     grow,  ///< enlarge the pool to the exact demand and run again
     stop,  ///< throw OverflowError; the lists are empty
@@ -20,23 +20,23 @@ enum class Overflow {
 /// Which key comes first in a sorted list.
 enum class Order { ascending, descending };
 
-/// How the nodes are arranged. Kernels do not change.
+/// The arrangement of the nodes. Kernels do not change with it.
 enum class Storage {
-    /// One pass: a node from the pool, linked to its cell. Reading follows links.
+    /// One pass: takes a node from the pool and links it to its cell. Reading follows links.
     linked,
-    /// Two passes over the same kernel, count and fill. The lists lie behind one another: reading
-    /// is fast, and the pool holds exactly the records. The kernel must insert as many records into
-    /// each cell both times. Processors under PoCL take one pass where they can, with as much
-    /// memory again as linked takes.
+    /// Two passes over the same kernel, which count and fill. The lists are contiguous, so reading
+    /// is fast, and the pool holds exactly the records. The kernel must insert the same number of
+    /// records into each cell both times. On processors under PoCL, builds take one pass if they
+    /// can, and about as much additional memory as Storage::linked.
     counted,
-    /// One pass: a number of slots for each cell. For lists that are about equally long.
+    /// One pass into a fixed number of slots per cell. For lists of about equal length.
     fixed,
-    /// One of the others. The first blocking builds of a container try them in turn and measure
-    /// them; the best is kept from then on. See docs/storages.md.
+    /// One of the others. The first blocking builds of a container measure them in turn; the
+    /// fastest then stays in use. See docs/storages.md.
     automatic,
 };
 
-/// The name of a storage, e.g. "linked".
+/// Returns the name of a storage, e.g. "linked".
 [[nodiscard]] constexpr const char* name_of(Storage storage) {
     switch (storage) {
         case Storage::linked:
@@ -53,7 +53,7 @@ enum class Storage {
 
 namespace detail {
 
-/// What nearest() takes, by name.
+/// The arguments of nearest(), by name.
 struct NearestKey {
     std::string record;
     std::string member;
@@ -62,12 +62,12 @@ struct NearestKey {
 
 }  // namespace detail
 
-/// The storage of a container: an enumerator of Storage, or nearest(). Converts from and to
-/// Storage.
+/// The storage of a container: an enumerator of Storage, or the result of nearest(). Converts from
+/// and to Storage.
 class StorageOption {
 public:
     StorageOption(Storage storage) : storage_(storage) {}
-    /// Storage::fixed for nearest().
+    /// Returns Storage::fixed for nearest().
     operator Storage() const { return storage_; }
 
     /// @private
@@ -81,10 +81,10 @@ private:
     std::optional<detail::NearestKey> nearest_;
 };
 
-/// A number of slots for each cell, in which the records stay that come first by a scalar member,
-/// e.g. `nearest(&Hit::depth, 8)`. The report counts the others as dropped. Equal keys are ordered
-/// by the remaining members, so the result does not depend on timing. Takes two passes over the
-/// same kernel, and two more for each tie-breaking word that is needed. ListsOptions::overflow,
+/// Returns a storage with a fixed number of slots per cell, which keeps the records that come first
+/// by a scalar member, e.g. `nearest(&Hit::depth, 8)`. The report counts the others as dropped. The
+/// remaining members order equal keys, so the result does not depend on timing. The kernels run
+/// twice, and twice more for each further word that decides ties. ListsOptions::overflow,
 /// capacity_nodes and slots do not apply.
 template <class T, class M>
 [[nodiscard]] StorageOption nearest(M T::*member, std::uint32_t slots) {
@@ -95,14 +95,14 @@ template <class T, class M>
 struct ListsOptions {
     StorageOption storage = Storage::linked;
     Overflow overflow = Overflow::grow;
-    /// Nodes in the pool at first. Without it the pool starts at one node a cell, at least 65,536,
-    /// under Overflow::grow; the other policies need it. Storage::fixed has no use for it.
+    /// Nodes in the pool at first. The default under Overflow::grow is one node per cell, and at
+    /// least 65,536; the other policies need a value. Has no effect in Storage::fixed.
     std::optional<std::uint64_t> capacity_nodes = {};
-    /// Slots for each cell in Storage::fixed at first: 4 under Overflow::grow, which raises it to
-    /// the longest list; the other policies need it.
+    /// Slots per cell in Storage::fixed at first. The default under Overflow::grow is 4, which
+    /// grows to the longest list; the other policies need a value.
     std::optional<std::uint32_t> slots = {};
-    /// Device memory that heads, nodes and counters may take together, and what sorts and builds
-    /// keep of any length. The fixed state of a sort, some 60 bytes, comes on top.
+    /// Bounds the device memory of heads, nodes and counters, and of the buffers of variable size
+    /// that sorts and builds keep. The fixed state of a sort, about 60 bytes, is not included.
     std::uint64_t budget_bytes = std::numeric_limits<std::uint64_t>::max();
     /// For Storage::automatic: how often kernels read all lists after each build.
     std::uint32_t expected_reads = 1;

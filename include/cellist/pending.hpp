@@ -8,12 +8,12 @@
 
 namespace cellist {
 
-/// A result of type T that the device is working on. The Lists or Buffer object that returned it
-/// may be destroyed before get(). Movable, not copyable.
+/// A result of type T that the device is still computing. You may destroy the Lists or Buffer
+/// object that returned it before get(). Movable, not copyable.
 template <class T>
 class Pending {
 public:
-    /// Nothing to wait for; get() throws.
+    /// Waits for nothing; get() throws Error.
     Pending() = default;
     /// @private
     Pending(cl::Event event, std::function<T()> result)
@@ -24,10 +24,11 @@ public:
     Pending& operator=(const Pending&) = delete;
     ~Pending() = default;
 
-    /// Completes when the device has done what was enqueued.
+    /// Completes when the device has finished the enqueued work.
     [[nodiscard]] const cl::Event& event() const { return event_; }
 
-    /// Whether get() would find the device done. Throws OpenClError. Does not block.
+    /// Returns true if the device has finished the enqueued work. Throws OpenClError. Does not
+    /// block.
     [[nodiscard]] bool ready() const {
         if (event_() == nullptr) return true;
         cl_int status = CL_QUEUED;
@@ -37,7 +38,8 @@ public:
         return status <= CL_COMPLETE;
     }
 
-    /// The result, once. Throws what the blocking call throws, and Error the second time. Blocks.
+    /// Returns the result, once. Throws what the blocking call throws, and Error the second time.
+    /// Blocks.
     T get() {
         const std::function<T()> result = std::exchange(result_, nullptr);
         if (!result) throw Error("there is no result: it was taken already, or none was asked for");

@@ -10,25 +10,25 @@
 
 namespace cellist {
 
-/// The work-items of a launch, in 1 to 3 dimensions, x fastest. Exactly these run: no range is
-/// rounded up unless padded() says so. A range with an extent of 0 launches nothing.
+/// The work-items of a launch, in 1 to 3 dimensions, x fastest. The kernel runs for exactly this
+/// range; only padded() rounds a range up. A range with an extent of 0 launches nothing.
 ///
-/// Where `local` is 0 the library takes a work-group of up to 256 items that divides the range, and
-/// leaves the choice to the driver where none of a useful size does (a prime extent, say). Such
-/// ranges are slow on GPUs: pad them.
+/// If `local` is 0, the library chooses a work-group of up to 256 items that divides the range. If
+/// no useful size divides it (a prime extent, for example), the driver chooses. Such ranges are
+/// slow on GPUs: pad them. Kernel::run throws Error if only some extents of `local` are 0.
 struct Range {
     std::array<std::size_t, 3> global{1, 1, 1};
     std::array<std::size_t, 3> local{0, 0, 0};
     std::size_t dimensions = 1;
 
-    /// Throw Error if an extent is negative.
+    /// These constructors throw Error if an extent is negative.
     Range(std::integral auto x) : Range(1, {x, 1, 1}) {}  // NOLINT(google-explicit-constructor)
     Range(std::integral auto x, std::integral auto y) : Range(2, {x, y, 1}) {}
     Range(std::integral auto x, std::integral auto y, std::integral auto z) : Range(3, {x, y, z}) {}
 
-    /// At least `items` work-items, in whole work-groups of `group`. The kernel returns early in
-    /// those behind the last item: `if (get_global_id(0) >= count) return;`.
-    /// Throws Error if an argument is negative, `group` is 0, or the sum exceeds 64 bits.
+    /// Returns a range of at least `items` work-items, in whole work-groups of `group`. The kernel
+    /// must return for the extra work-items: `if (get_global_id(0) >= count) return;`. Throws Error
+    /// if an argument is negative, if `group` is 0, or if the sum exceeds 64 bits.
     [[nodiscard]] static Range padded(std::integral auto items, std::size_t group = 256) {
         Range range(items);
         std::size_t& count = range.global[0];

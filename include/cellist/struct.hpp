@@ -11,19 +11,18 @@
 #include <cellist/detail/record_type.hpp>
 #include <cellist/opencl.hpp>
 
-/// Makes a struct known to kernels under its own name, with the same members at the same offsets.
+/// Adapts a struct: kernels know it by its own name, with the same members at the same offsets.
 ///
 ///     struct Hit { cl_float depth; cl_uint id; };
 ///     CELLIST_STRUCT(Hit, depth, id);
 ///
-/// Stands in the namespace of the struct, and names every member in order of declaration. Members
-/// are scalars (`cl_float`, `cl_uint`, ... and the C++ types of the same size, enums included),
-/// `cl_` vectors, arrays, and structs that are adapted themselves; `<cellist/glm.hpp>` adds GLM's
-/// types. Note that `cl_float3` is `cl_float4` on the host, so a kernel sees a float4.
+/// Put it in the namespace of the struct, and name every member in order of declaration. Members
+/// are scalars, `cl_` vectors, arrays, and other adapted structs. Scalars are `cl_float`,
+/// `cl_uint`, ..., the C++ types of the same size, and enums, but not bool. `<cellist/glm.hpp>`
+/// adds GLM's types. On the host `cl_float3` is `cl_float4`, so a kernel sees a float4.
 ///
-/// The struct must be trivially copyable and of standard layout. The offsets are compared with
-/// OpenCL C's rules when the host program is compiled, and with the device compiler's in each
-/// build.
+/// The struct must be trivially copyable and have standard layout. The host compiler checks the
+/// offsets against OpenCL C's rules, and each kernel build checks them with the device's compiler.
 #define CELLIST_STRUCT(type, ...)                                                                  \
     constexpr auto cellist_describe(const type*) {                                                 \
         return ::cellist::detail::describe<type>(                                                  \
@@ -40,9 +39,9 @@
                   " differs from OpenCL C's: name every member, in order of declaration, and use " \
                   "types that are aligned as on the device")
 
-// Whether an aggregate takes one initialiser more than members are named. A struct with
-// constructors is decomposed by a structured binding with as many names: if it has more members,
-// the compiler says so.
+// True if an aggregate takes one more initialiser than there are named members. For a struct with
+// constructors, a structured binding with the same number of names fails to compile if there are
+// more.
 #define CELLIST_STRUCT_HAS_MORE(type, ...)                                                         \
     []<class T>(const T*) {                                                                        \
         if constexpr (std::is_aggregate_v<T> &&                                                    \
@@ -67,17 +66,17 @@
 
 namespace cellist {
 
-/// How a C++ type appears in OpenCL C. Specialise it to teach cellist a type that is not a struct
-/// of yours (see <cellist/glm.hpp>). Members:
+/// How a C++ type appears in OpenCL C. Specialise it for a type that is not your own struct (see
+/// <cellist/glm.hpp>). Members:
 ///   static constexpr std::size_t size, alignment;          by OpenCL C's rules
 ///   static std::string name();                             e.g. "float4"
-///   static void define(detail::Definitions&);              adds the definitions that the name needs
+///   static void define(detail::Definitions&);              adds the definitions for the name
 ///   static void add_scalars(const std::string& path, std::vector<std::string>&);
 ///                                                          the scalars of a value, in order
 template <class T>
 struct DeviceType;
 
-/// Names an adapted struct that a kernel uses without a container of it:
+/// Names an adapted struct that a kernel uses without a container:
 /// `Kernel(device, source, "draw", fragments, cellist::type<Camera>)`.
 template <class T>
 struct Type {};
@@ -159,7 +158,7 @@ concept Adapted = requires {
 template <Adapted T>
 inline constexpr auto description = cellist_describe(static_cast<const T*>(nullptr));
 
-/// The scalars of OpenCL C by kind and size; nullptr for types that it does not have.
+/// The name of a scalar in OpenCL C, by kind and size; nullptr if OpenCL C has no such type.
 template <class T>
 constexpr const char* scalar_name() {
     if constexpr (std::is_same_v<T, bool>)
@@ -288,7 +287,7 @@ CELLIST_VECTOR_TYPES(double)
 
 namespace detail {
 
-/// Everything that a program needs to know T.
+/// The definitions that a program needs to use T.
 template <class T>
 Definitions definitions_of() {
     Definitions definitions;
@@ -296,7 +295,7 @@ Definitions definitions_of() {
     return definitions;
 }
 
-/// The name of the member that a pointer to member means.
+/// The name of the member that a pointer to member selects.
 template <Adapted T, class M>
 const char* member_name(M T::*pointer) {
     const char* name = "";

@@ -4,7 +4,7 @@
 
 namespace cellist::command {
 
-/// Prints a table of all devices. Returns the exit status. Throws Error if there is none.
+/// Prints a table of all devices. Returns the exit status. Throws Error if there is no device.
 int devices(std::ostream& out);
 
 }  // namespace cellist::command

@@ -1,5 +1,5 @@
-// The `cellist` command: what the OpenCL devices of this machine are, whether cellist works on them,
-// and what its storages cost there.
+// The program `cellist`: lists the OpenCL devices of this machine, checks that cellist works on them,
+// and measures its storages there.
 
 #include <cerrno>
 #include <iostream>
@@ -17,14 +17,15 @@
 namespace {
 
 constexpr const char* usage =
-    "usage: cellist devices                  the OpenCL devices of this machine\n"
-    "       cellist selftest [--device D]    insert, grow, sort and validate against the CPU\n"
-    "       cellist tune [--device D]        measure the storages, for Storage::automatic\n"
+    "usage: cellist devices                  list the OpenCL devices of this machine\n"
+    "       cellist selftest [--device D]    check inserts, growth and sorting against the CPU\n"
+    "       cellist tune [--device D]        measure the storages for Storage::automatic\n"
     "       cellist --help | --version\n"
     "\n"
-    "D is an index or a part of a name, as `cellist devices` shows them. Without it the\n"
-    "environment variable CELLIST_DEVICE decides, then the first GPU, then the first device.\n"
-    "Exit status: 0 all is well, 1 a test failed or a device is missing, 2 wrong usage.\n";
+    "D is an index from `cellist devices`, or part of a name. Without --device, the\n"
+    "environment variable CELLIST_DEVICE names the device. Without both, cellist takes\n"
+    "the first GPU, or else the first device.\n"
+    "Exit status: 0 success, 1 a check failed or no device was found, 2 wrong usage.\n";
 
 int wrong_usage(const std::string& what) {
     std::cerr << "cellist: " << what << "\n\n" << usage;
@@ -71,13 +72,13 @@ int main(int argc, char** argv) {
         return 1;
     };
     try {
-        // The first write that fails ends the command: on a full disk, or in a closed pipe.
+        // The program ends at the first write that fails, on a full disk or a closed pipe.
         std::cout.exceptions(std::ios::badbit | std::ios::failbit);
         const int status = run({argv + 1, argv + argc});
         std::cout.flush();
         return status;
     } catch (const std::ios::failure&) {
-        // The exception does not know the reason; the last call of the system does.
+        // The exception has no reason; the last system call set errno.
         const std::error_code reason(errno, std::generic_category());
         return fail("cannot write to standard output: " + reason.message());
     } catch (const std::exception& error) {

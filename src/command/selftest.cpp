@@ -60,8 +60,7 @@ using Oracle = std::map<std::uint64_t, std::vector<Record>>;  ///< sorted record
 constexpr std::uint64_t width = 61;
 constexpr std::uint64_t height = 47;
 
-/// Inserts enough for long lists, of which a buffer and all memory together have room for some hundred
-/// bytes each.
+/// The number of inserts: enough for long lists, and few enough for the device's memory.
 std::size_t insert_count(const DeviceInfo& device) {
     const std::uint64_t most =
         std::min(device.max_allocation_bytes / 64, device.global_memory_bytes / 256);
@@ -74,7 +73,7 @@ std::string text_of(const Record& record) {
     return text.str();
 }
 
-/// Where two lists differ first; empty if they do not.
+/// The first difference between two lists; empty if they are equal.
 std::string difference(std::uint64_t cell, const std::vector<Record>& expected,
                        const std::vector<Record>& found) {
     const std::string where = "cell " + std::to_string(cell) + ": ";
@@ -106,8 +105,8 @@ public:
     explicit Selftest(const Device& device) : device_(device) {
         std::mt19937 random(20100628);
         inserts_.resize(insert_count(device.info()));
-        // One list is long, a quarter of all. It comes last: slots for all cells follow the longest list,
-        // so fixed slots are filled without it.
+        // One long list has a quarter of the records. Its inserts come last, so that a test can leave
+        // them out: the longest list decides the number of fixed slots for all cells.
         even_ = inserts_.size() - inserts_.size() / 4;
         for (cl_uint i = 0; SelftestInsert & insert : inserts_) {
             const bool hot = i >= even_;
@@ -173,7 +172,7 @@ public:
     }
 
 private:
-    /// What the first inserts put into the lists.
+    /// The lists after the first `count` inserts.
     [[nodiscard]] Oracle oracle(std::size_t count) const {
         Oracle oracle;
         for (std::size_t i = 0; i < count; ++i) {
@@ -195,7 +194,7 @@ private:
         return stored;
     }
 
-    /// Sorts the lists and compares them with the CPU's.
+    /// Sorts the lists and compares them with the oracle.
     std::string sorted_difference(Lists<SelftestRecord>& lists, std::size_t count) const {
         const Oracle all = oracle(count);
         lists.sort(&SelftestRecord::key);
@@ -218,7 +217,7 @@ private:
         return *lists_;
     }
 
-    /// A build of the first inserts.
+    /// Builds lists from the first `count` inserts.
     BuildReport build(Lists<SelftestRecord>& lists, std::size_t count) {
         if (!insert_)
             insert_.emplace(device_, source, "selftest_insert", lists, type<SelftestInsert>);
@@ -233,7 +232,7 @@ private:
 
     const Device& device_;
     std::vector<SelftestInsert> inserts_;
-    std::size_t even_ = 0;  ///< inserts without those into the long list
+    std::size_t even_ = 0;  ///< inserts before those of the long list
     std::optional<Lists<SelftestRecord>> lists_;
     std::optional<Kernel> insert_;
 };
@@ -248,10 +247,9 @@ int selftest(const Device& device, std::ostream& out) {
         {"grows to the exact demand and counts every record",
          [&] { return test.grows_and_counts(); }},
         {"sorts every list, ties included", [&] { return test.sorts(); }},
-        {"takes the 4 nearest of every list", [&] { return test.takes_the_nearest(); }},
-        {"fills contiguous lists and fixed slots alike",
-         [&] { return test.fills_other_storages(); }},
-        {"drops exactly what does not fit", [&] { return test.drops_exactly(); }},
+        {"finds the 4 nearest records of every list", [&] { return test.takes_the_nearest(); }},
+        {"fills contiguous lists and fixed slots", [&] { return test.fills_other_storages(); }},
+        {"drops exactly the records that do not fit", [&] { return test.drops_exactly(); }},
     };
     bool all_passed = true;
     for (const auto& [name, check] : checks) {

@@ -41,19 +41,19 @@ kernel void tune_insert(CELLIST_LISTS(TuneRecord, lists), uint is_random)
 )";
 
 constexpr std::uint64_t occupancy = 16;
-constexpr int builds = 5;  ///< of which the first warms up
+constexpr int builds = 5;  ///< the first one warms up
 
-/// More than caches hold, and no more than an eighth of the device's memory.
+/// The number of records: more than caches hold, within an eighth of the device's memory.
 std::uint64_t record_count(const DeviceInfo& device) {
     const std::uint64_t wanted = (device.type & CL_DEVICE_TYPE_GPU) != 0 ? 1u << 24 : 1u << 22;
-    // In Storage::fixed a cell has slots for up to four times the mean.
+    // In Storage::fixed a cell may have slots for four times the mean.
     const std::uint64_t most =
         std::min(device.max_allocation_bytes, device.global_memory_bytes / 8) /
         (4 * sizeof(TuneRecord));
     return std::bit_floor(std::clamp<std::uint64_t>(most, 1024, wanted));
 }
 
-/// The cost of a record.
+/// Measures the cost of a record: the least of all builds after the first.
 detail::Cost measure(const Device& device, Storage storage, detail::Pattern pattern,
                      std::uint64_t records, std::uint32_t slots) {
     Lists<TuneRecord> lists(device, {records / occupancy},
@@ -67,7 +67,7 @@ detail::Cost measure(const Device& device, Storage storage, detail::Pattern patt
             [&] { return lists.build(insert, records, is_random); }, trial);
         if (report.stored != records)
             throw Error(std::to_string(report.stored) + " of " + std::to_string(records) +
-                        " records were stored: cellist selftest says what is wrong");
+                        " records were stored: run `cellist selftest` to find the fault");
         const double per_record = 1 / static_cast<double>(records);
         const detail::Cost cost{per_record * trial.cost.build_seconds,
                                 per_record * trial.cost.read_seconds};
@@ -78,7 +78,7 @@ detail::Cost measure(const Device& device, Storage storage, detail::Pattern patt
     return least;
 }
 
-/// The longest list that a pattern makes.
+/// The length of the longest list that a pattern makes.
 std::uint32_t longest(const Device& device, detail::Pattern pattern, std::uint64_t records) {
     if (pattern == detail::Pattern::coherent) return occupancy;
     Lists<TuneRecord> lists(device, {records / occupancy}, {.storage = Storage::counted});
@@ -98,11 +98,11 @@ std::string nanoseconds(double seconds) {
 int tune(const Device& device, std::ostream& out) {
     const DeviceInfo& info = device.info();
     const std::uint64_t records = record_count(info);
-    // What would make the work useless comes before it.
+    // Fail before the measurements if the profile cannot be written.
     const std::string path = detail::prepare_profile(info).string();
     out << info.name << " (" << info.platform << ", driver " << info.driver << ")\n"
         << records << " records of " << sizeof(TuneRecord) << " bytes in " << records / occupancy
-        << " lists; nanoseconds a record\n"
+        << " lists; nanoseconds per record\n"
         << "                 build      read\n";
 
     detail::Profile profile(records);

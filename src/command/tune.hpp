@@ -6,9 +6,9 @@
 
 namespace cellist::command {
 
-/// Measures what a record costs on a device in each storage, prints a table, and writes the file that
-/// Storage::automatic starts from. Returns the exit status. Throws Error, where the file cannot be
-/// written too. Takes seconds.
+/// Measures the cost of a record on a device in each storage and prints a table. Writes the profile
+/// that Storage::automatic starts from. Returns the exit status. Throws Error, also if it cannot
+/// write the profile. Takes seconds.
 int tune(const Device& device, std::ostream& out);
 
 }  // namespace cellist::command
