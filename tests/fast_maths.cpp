@@ -92,7 +92,7 @@ TEST_CASE("NaN, infinity and -0 are in order with every build option") {
         nearest.run(1, lists, ids);
         REQUIRE(ids.download() == std::vector<cl_uint>{0, 1, 2, 3, 4, 5, 6, 7});
 
-        Lists<Item> few(device(), {1}, {.storage = nearest(&Item::key, 6)});
+        Lists<Item> few(device(), {1}, {.storage = cellist::nearest(&Item::key, 6)});
         few.build(insert, count, Buffer<cl_uint>(device(), inserts.cells),
                   Buffer<Item>(device(), inserts.records), count);
         few.sort(&Item::id);
