@@ -384,7 +384,7 @@ std::string title_of(const FrameOptions& options) {
 void stand_on_floor(Scene& scene, const FrameOptions& options) {
     if (!options.opaque_floor) return;
     for (const raster::View& view : make_views(options))
-        if (view.eye[1] > scene.look.floor_height) {
+        if (view.eye[1] > scene.lighting.floor_height) {
             add_floor(scene);
             return;
         }

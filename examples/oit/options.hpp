@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "budget/chooser.hpp"
+#include "budget/budget_search.hpp"
 #include "frame_options.hpp"
 #include "report/picture_name.hpp"
 

@@ -59,7 +59,7 @@ void run(const Options& options) {
 
     const cellist::DeviceInfo& info = device.info();
     const bool gpu = (info.type & CL_DEVICE_TYPE_GPU) != 0;
-    bench::Run::Figure results{
+    bench::Run::Row results{
         {"device", info.name},
         {"platform", info.platform},
         {"driver", info.driver},
@@ -67,7 +67,7 @@ void run(const Options& options) {
         {"threads", gpu ? std::thread::hardware_concurrency() : info.compute_units},
         {"git", options.git},
         {"size", options.size}};
-    results.update(run.figures());
+    results.update(run.rows());
     if (options.json.empty()) {
         std::cout << results.dump(1) << '\n';
         return;

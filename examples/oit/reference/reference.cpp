@@ -38,13 +38,13 @@ struct OpaqueSample {
     dvec3 colour{0.0};
 };
 
-class Painter {
+class ReferenceRenderer {
 public:
-    Painter(const Frame& frame, const ReferenceOptions& options)
+    ReferenceRenderer(const Frame& frame, const ReferenceOptions& options)
         : frame_(frame),
           options_(options),
-          needs_(needs_of(frame)),
-          layout_(node_layout(frame.quality, needs_)),
+          features_(features_of(frame)),
+          layout_(node_layout(frame.quality, features_)),
           samples_(static_cast<std::size_t>(frame.quality.samples)),
           opaque_(frame.pixels() * samples_) {
         reference_.width = static_cast<std::size_t>(frame.width());
@@ -77,7 +77,7 @@ private:
                 if (frame_.scene.is_opaque(instance) != opaque) continue;
                 const support::Mesh& mesh = model_of(instance).mesh;
                 const raster::RasterInstance placed =
-                    raster::instance_of({.to_world = place_at(instance, frame_.time)},
+                    raster::instance_of({.to_world = transform_at(instance, frame_.time)},
                                         frame_.views[eye], static_cast<cl_uint>(eye));
                 std::size_t last = 0;
                 for_each_cover(mesh, placed, frame_.views[eye], frame_.quality.samples,
@@ -94,7 +94,7 @@ private:
     [[nodiscard]] bool too_close(double a, double b) const {
         // Infinity is the depth of no surface, which is close to nothing.
         return std::isfinite(a) && std::isfinite(b) &&
-               std::abs(a - b) <= layout_.depth_resolution(needs_).at(std::max(a, b));
+               std::abs(a - b) <= layout_.depth_resolution(features_).at(std::max(a, b));
     }
     // The same for depths that are compared before they are stored.
     [[nodiscard]] static bool float_too_close(double a, double b) {
@@ -141,7 +141,7 @@ private:
                       const raster::RasterInstance& placed, std::size_t triangle,
                       const ReferenceCover& cover) {
         const Material& material = frame_.scene.material_of(instance);
-        const ReferenceShading shading(frame_.scene.look, frame_.views[eye]);
+        const ReferenceShading shading(frame_.scene.lighting, frame_.views[eye]);
         const std::size_t pixel = pixel_of(eye, cover.x, cover.y);
         const bool is_floor = material.paint == static_cast<cl_uint>(Paint::floor);
         const dvec3 colour = is_floor
@@ -173,7 +173,7 @@ private:
         if (visible == 0) return;
 
         const Material& material = frame_.scene.material_of(instance);
-        const ReferenceShading shading(frame_.scene.look, frame_.views[eye]);
+        const ReferenceShading shading(frame_.scene.lighting, frame_.views[eye]);
         const auto blend = static_cast<Blend>(material.blend);
         const auto gloss = static_cast<double>(material.gloss);
         dvec3 tint = tint_of(instance, triangle, cover);
@@ -260,7 +260,7 @@ private:
             std::abs(a.sample_depth[s] - a.depth) + std::abs(b.sample_depth[s] - b.depth);
         const double most = std::max(a.sample_depth[s], b.sample_depth[s]);
         return std::abs(a.sample_depth[s] - b.sample_depth[s]) <=
-               layout_.depth_resolution(needs_).at(most) + half * steep;
+               layout_.depth_resolution(features_).at(most) + half * steep;
     }
 
     void blend(std::size_t p) {
@@ -268,7 +268,7 @@ private:
         const auto height = static_cast<std::size_t>(frame_.height());
         const std::size_t eye = p / (width * height);
         const auto x = static_cast<int>(p % width), y = static_cast<int>(p / width % height);
-        const ReferenceShading shading(frame_.scene.look, frame_.views[eye]);
+        const ReferenceShading shading(frame_.scene.lighting, frame_.views[eye]);
 
         const std::span<ReferenceFragment> list(
             reference_.fragments.begin() + static_cast<std::ptrdiff_t>(reference_.offsets[p]),
@@ -301,7 +301,7 @@ private:
 
     const Frame& frame_;
     const ReferenceOptions& options_;
-    Needs needs_;
+    FrameFeatures features_;
     NodeLayout layout_;
     std::size_t samples_;
     std::vector<OpaqueSample> opaque_;
@@ -326,9 +326,9 @@ std::uint64_t Reference::most_layers() const {
 }
 
 Reference draw_reference(const Frame& frame, const ReferenceOptions& options) {
-    if (needs_of(frame).has(Blend::user) && !options.blend)
+    if (features_of(frame).has(Blend::user) && !options.blend)
         throw support::InputError("a blend function in OpenCL C has no reference to compare with");
-    return Painter(frame, options).draw();
+    return ReferenceRenderer(frame, options).draw();
 }
 
 }  // namespace oit

@@ -10,7 +10,7 @@
 #include "progress.hpp"
 #include "report/frame_json.hpp"
 #include "report/number_text.hpp"
-#include "tradeoff/figures.hpp"
+#include "tradeoff/metrics.hpp"
 #include "tradeoff/page.hpp"
 #include "tradeoff/sweep.hpp"
 #include "tradeoff/tradeoff_options.hpp"
