@@ -76,11 +76,10 @@ private:
             for (const Instance& instance : frame_.scene.instances) {
                 if (frame_.scene.is_opaque(instance) != opaque) continue;
                 const support::Mesh& mesh = model_of(instance).mesh;
-                const raster::RasterInstance placed =
-                    raster::instance_of({.to_world = transform_at(instance, frame_.time)},
-                                        frame_.views[eye], static_cast<cl_uint>(eye));
+                const Projection<float> placed(transform_at(instance, frame_.time),
+                                               frame_.views[eye]);
                 std::size_t last = 0;
-                for_each_cover(mesh, placed, frame_.views[eye], frame_.quality.samples,
+                for_each_cover(mesh, placed, frame_.quality.samples,
                                [&](std::size_t triangle, const ReferenceCover& cover) {
                                    if (triangle / 1024 != last / 1024) report(done_ + triangle);
                                    last = triangle;
@@ -113,15 +112,13 @@ private:
                static_cast<std::size_t>(x);
     }
 
-    [[nodiscard]] dvec3 normal_of(const Instance& instance, const raster::RasterInstance& placed,
+    [[nodiscard]] dvec3 normal_of(const Instance& instance, const Projection<float>& placed,
                                   std::size_t triangle, const ReferenceCover& cover) const {
         const support::Mesh& mesh = model_of(instance).mesh;
         dvec3 normal(0);
         for (std::size_t j = 0; j < 3; ++j)
             normal += cover.weight[j] * dvec3(mesh.normals[mesh.triangles[triangle][j]]);
-        return {glm::dot(to_double(placed.normal_x), normal),
-                glm::dot(to_double(placed.normal_y), normal),
-                glm::dot(to_double(placed.normal_z), normal)};
+        return placed.normal(normal);
     }
 
     // The tint of the side that is seen.
@@ -137,9 +134,8 @@ private:
         return tint * factor;
     }
 
-    void cover_opaque(std::size_t eye, const Instance& instance,
-                      const raster::RasterInstance& placed, std::size_t triangle,
-                      const ReferenceCover& cover) {
+    void cover_opaque(std::size_t eye, const Instance& instance, const Projection<float>& placed,
+                      std::size_t triangle, const ReferenceCover& cover) {
         const Material& material = frame_.scene.material_of(instance);
         const ReferenceShading shading(frame_.scene.lighting, frame_.views[eye]);
         const std::size_t pixel = pixel_of(eye, cover.x, cover.y);
@@ -160,7 +156,7 @@ private:
     }
 
     void cover_transparent(std::size_t eye, const Instance& instance,
-                           const raster::RasterInstance& placed, std::size_t triangle,
+                           const Projection<float>& placed, std::size_t triangle,
                            const ReferenceCover& cover) {
         const std::size_t pixel = pixel_of(eye, cover.x, cover.y);
         std::uint32_t visible = 0;
