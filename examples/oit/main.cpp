@@ -197,8 +197,9 @@ int run(const oit::Options& options) {
         choosing->update(part);
         if (part == 1) choosing.reset();
     };
-    oit::BudgetController controller(device, frame, *options.budget, options.check_every,
-                       {.progress = show_choosing, .seconds = options.search_seconds});
+    oit::BudgetController controller(
+        device, frame, *options.budget, options.check_every,
+        {.progress = show_choosing, .seconds = options.search_seconds});
     draw_within_budget(report, controller, frame);
     // The reference is that of all layers.
     write(report, frame, controller.renderer());
@@ -211,7 +212,7 @@ int main(int count, char** arguments) {
     int exit_code = 0;
     const int failed = support::run_program("cellist-oit", [&] {
         const oit::Options options = oit::parse_options(count, arguments);
-        if (options.help)
+        if (!options.help_text.empty())
             std::cout << options.help_text;
         else
             exit_code = run(options);

@@ -114,7 +114,7 @@ bool run(const oit::GridOptions& options) {
 int main(int count, char** arguments) {
     return support::run_program("cellist-budget-grid", [&] {
         const oit::GridOptions options = oit::parse_grid_options(count, arguments);
-        if (!options.help) return run(options);
+        if (options.help_text.empty()) return run(options);
         std::cout << options.help_text;
         return true;
     });
