@@ -3,6 +3,7 @@
 
 #include "support/errors.hpp"
 #include "support/inserts.hpp"
+#include "support/skip.hpp"
 #include "support/storages.hpp"
 
 namespace cellist::test {
@@ -82,7 +83,8 @@ struct Large {
 CELLIST_STRUCT(Large, id, copies);
 
 TEST_CASE("lists of more than 256 MiB are downloaded whole") {
-    if (device().info().global_memory_bytes < std::uint64_t{2} << 30) return;
+    if (device().info().global_memory_bytes < std::uint64_t{2} << 30)
+        CELLIST_SKIP("the device has less than 2 GiB of memory");
     constexpr cl_uint count = 290'000;
     Lists<Large> lists(device(), {7}, {.capacity_nodes = count});
     Kernel kernel(device(), R"(

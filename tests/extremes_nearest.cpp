@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "support/extremes.hpp"
+#include "support/skip.hpp"
 #include "support/storages.hpp"
 
 namespace cellist::test {
@@ -24,7 +25,7 @@ void for_each_key(std::mt19937& random, auto use) {
     use(narrow, "level", &Narrow::level);
     use(narrow, "uchar_value", &Narrow::uchar_value);
     use(narrow, "char_value", &Narrow::char_value);
-    if (!device().info().fp64) return;
+    if (!device().info().fp64) CELLIST_SKIP("doubles: the device has none");
     use(extreme_inserts<Wide>(lengths, random), "key", &Wide::key);
 }
 
@@ -149,7 +150,7 @@ TEST_CASE("the nearest records by keys at the borders of their types are sorted 
     const auto numbers = extreme_inserts<Numbers>(lengths, random);
     require_sorts_nearest(numbers, Storage::linked, &Numbers::float_value);
     require_sorts_nearest(numbers, Storage::counted, &Numbers::long_value);
-    if (!device().info().fp64) return;
+    if (!device().info().fp64) CELLIST_SKIP("doubles: the device has none");
     const auto doubles = extreme_inserts<Wide>(lengths, random);
     require_sorts_nearest(doubles, Storage::fixed, &Wide::key);
 }

@@ -49,15 +49,15 @@ vec3 normalized(const vec3& v, float addend) {
     return v * (1.0F / std::sqrt(glm::dot(v, v) + addend));
 }
 
-// The light of the scene's look: the model of shading.clh.
+// The scene's lighting: the model of shading.clh.
 class Light {
 public:
-    explicit Light(const oit::Look& look)
-        : sky_(to_vec3(look.sky)),
-          ground_(to_vec3(look.ground)),
-          key_(to_vec3(look.key)),
-          to_key_(to_vec3(look.key_direction)),
-          rim_(to_vec3(look.rim)) {}
+    explicit Light(const oit::Lighting& lighting)
+        : sky_(to_vec3(lighting.sky)),
+          ground_(to_vec3(lighting.ground)),
+          key_(to_vec3(lighting.key)),
+          to_key_(to_vec3(lighting.key_direction)),
+          rim_(to_vec3(lighting.rim)) {}
 
     [[nodiscard]] vec3 shade(const vec3& tint, float gloss, vec3 normal, const vec3& ray) const {
         normal = normalized(normal, 1e-6F);
@@ -185,7 +185,7 @@ void PlainCpp::draw_surfaces(bool opaque) {
     const raster::View& view = frame_.views[0];
     const vec3 origin = to_vec3(view.ray_origin), ray_x = to_vec3(view.ray_x),
                ray_y = to_vec3(view.ray_y);
-    const Light light(frame_.scene.look);
+    const Light light(frame_.scene.lighting);
     for (const oit::Instance& instance : frame_.scene.instances) {
         if (frame_.scene.is_opaque(instance) != opaque) continue;
         const support::Mesh& mesh = frame_.scene.models[instance.model].mesh;
@@ -206,7 +206,8 @@ void PlainCpp::draw_surfaces(bool opaque) {
             lists_[pixel].push_back(
                 {depth, material.alpha * shade(x, y, normal, front), material.alpha});
         };
-        project(mesh, raster::instance_of({.to_world = place_at(instance, frame_.time)}, view, 0));
+        project(mesh,
+                raster::instance_of({.to_world = transform_at(instance, frame_.time)}, view, 0));
         for (const auto& [a, b, c] : mesh.triangles) {
             if (opaque)
                 scan(vertices_[a], vertices_[b], vertices_[c], hide);
@@ -218,13 +219,13 @@ void PlainCpp::draw_surfaces(bool opaque) {
 
 // Blends front to back, and empties the lists for the next frame while they are in the cache.
 void PlainCpp::blend() {
-    const oit::Look& look = frame_.scene.look;
+    const oit::Lighting& lighting = frame_.scene.lighting;
     const auto nearer = [](const Fragment& a, const Fragment& b) { return a.depth < b.depth; };
     std::size_t pixel = 0;
     for (int y = 0; y < height_; ++y) {
         const float down = (static_cast<float>(y) + 0.5F) / static_cast<float>(height_);
         const vec3 background =
-            glm::mix(to_vec3(look.background_top), to_vec3(look.background_bottom), down);
+            glm::mix(to_vec3(lighting.background_top), to_vec3(lighting.background_bottom), down);
         for (int x = 0; x < width_; ++x, ++pixel) {
             std::vector<Fragment>& list = lists_[pixel];
             std::sort(list.begin(), list.end(), nearer);

@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include <cellist/cellist.hpp>
 
 #include "bucket_sort.hpp"
@@ -18,52 +16,35 @@
 namespace {
 
 struct Options {
-    std::size_t keys = 0;
-    std::string distribution;
+    std::size_t keys = 4'000'000;
+    std::string distribution = "all";
     cellist::Storage storage = cellist::Storage::counted;
-    std::uint64_t runs = 0;
-    std::uint32_t seed = 0;
+    std::uint64_t runs = 3;
+    std::uint32_t seed = 1;
     std::string device;
     std::string help;
 };
 
 Options parse_options(int count, const char* const* arguments) {
-    using support::read_number;
     Options options;
-    std::string keys = "4000000", storage = "counted", runs = "3", seed = "1";
-    options.distribution = "all";
-    std::string names;
-    for (const auto name : bucket_sort::distributions) names += std::string(name) + ", ";
-    CLI::App app{"Sorts 32-bit keys with payloads through per-cell lists.", "bucket_sort"};
-    app.add_option("--keys", keys, "number of keys")->type_name("N")->capture_default_str();
-    app.add_option("--distribution", options.distribution, names + "or all")
-        ->type_name("NAME")
-        ->capture_default_str();
-    app.add_option("--storage", storage, "storage of the lists")
-        ->type_name("linked|counted|fixed")
-        ->capture_default_str();
-    app.add_option("--runs", runs, "timed runs, after a warm-up; the fastest counts")
-        ->type_name("N")
-        ->capture_default_str();
-    app.add_option("--seed", seed, "seed of the random numbers")
-        ->type_name("N")
-        ->capture_default_str();
-    app.add_option("--device", options.device,
-                   "device, by index or part of its name; the default is CELLIST_DEVICE, a GPU, or "
-                   "the first")
-        ->type_name("D");
-    if (const auto help = support::parse_command_line(app, count, arguments)) {
-        options.help = *help;
-        return options;
-    }
-    options.keys = read_number("--keys", keys, 0, 1U << 31);
-    options.storage = support::read_storage("--storage", storage);
-    options.runs = read_number("--runs", runs, 1, 1'000'000);
-    options.seed = static_cast<std::uint32_t>(read_number("--seed", seed, 0, 0xFFFFFFFF));
     const auto& known = bucket_sort::distributions;
-    if (options.distribution != "all" &&
-        std::find(known.begin(), known.end(), options.distribution) == known.end())
-        support::refuse("--distribution", options.distribution, names + "or all");
+    std::string names;
+    for (const auto name : known) names += std::string(name) + ", ";
+    support::CommandLine line("bucket_sort",
+                              "Sorts 32-bit keys with payloads through per-cell lists.");
+    line.add_number("--keys", options.keys, 0, 1U << 31, "number of keys");
+    line.add("--distribution", options.distribution, names + "or all", "NAME",
+             [&](const std::string& text) {
+                 if (text != "all" && std::find(known.begin(), known.end(), text) == known.end())
+                     support::refuse("--distribution", text, names + "or all");
+                 options.distribution = text;
+             });
+    line.add_storage(options.storage);
+    line.add_number("--runs", options.runs, 1, 1'000'000,
+                    "timed runs, after a warm-up; the fastest counts");
+    line.add_seed(options.seed);
+    line.add_device(options.device);
+    options.help = line.parse(count, arguments).value_or("");
     return options;
 }
 

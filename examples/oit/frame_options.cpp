@@ -6,8 +6,6 @@
 #include <string_view>
 #include <utility>
 
-#include <CLI/CLI.hpp>
-
 #include "closest.hpp"
 #include "command_line.hpp"
 #include "files.hpp"
@@ -198,6 +196,37 @@ void check_size(const FrameOptions& options, const cellist::Device& device) {
                          " pixels");
 }
 
+void check_scene(const FrameOptions& options) {
+    const std::vector<std::string> arguments = arguments_of(options);
+    for (const std::string& argument : arguments) {
+        const SceneInfo* scene = find_scene(argument.substr(0, argument.rfind(':')));
+        if (find_scene(argument) != nullptr && arguments.size() > 1)
+            throw InputError("the scene '" + argument +
+                             "' is drawn alone: leave out the other meshes and scenes");
+        std::error_code error;
+        if (scene != nullptr && scene->name != argument &&
+            !std::filesystem::exists(argument, error) &&
+            !std::filesystem::exists(std::string(scene->name), error))
+            throw InputError("'" + argument + "': the scene " + std::string(scene->name) +
+                             " takes its opacity from --alpha");
+    }
+    if (options.up && find_scene(options.scene) != nullptr)
+        throw InputError("--up turns mesh files, and '" + options.scene + "' is a scene");
+}
+
+void refuse_idle_options(const support::CommandLine& line, const FrameOptions& options) {
+    const bool one_sample = options.quality.samples == 1;
+    const SceneInfo* scene = find_scene(options.scene);
+    const support::IdleOption idle[] = {
+        {"--depth-range", one_sample,
+         "--depth-range needs several samples: add --samples 2, 4 or 8"},
+        {"--alpha", scene != nullptr && !scene->takes_alpha,
+         "--alpha: the surfaces of '" + options.scene + "' have opacities of their own"},
+        {"--resolve", one_sample, "--resolve needs several samples: add --samples 2, 4 or 8"},
+    };
+    line.refuse_idle(idle);
+}
+
 }  // namespace
 
 std::string blend_text(const FrameOptions& options) {
@@ -205,19 +234,6 @@ std::string blend_text(const FrameOptions& options) {
     for (const auto& [name, blend] : blend_kinds)
         if (options.blend == blend) return std::string(name);
     return {};
-}
-
-void add_option(CLI::App& app, const char* name, std::string& value, const char* what,
-                const char* type) {
-    CLI::Option* option = app.add_option(name, value, what)->type_name(type);
-    if (!value.empty()) option->capture_default_str();
-}
-
-double read_between(const std::string& option, const std::string& text, double least, double most,
-                    const std::string& expected) {
-    const auto value = parse<double>(text);
-    if (!value || !(*value >= least && *value <= most)) refuse(option, text, expected);
-    return *value;
 }
 
 void check_outputs(const FrameOptions& options, std::span<const NamedFile> outputs) {
@@ -257,95 +273,64 @@ std::string help_on_tables() {
     return text;
 }
 
-FrameArguments::FrameArguments(CLI::App& app, const FrameOptions& options)
-    : app_(app),
-      scene_(options.scene.empty() ? std::vector<std::string>{} : arguments_of(options)),
-      size_(std::to_string(options.width) + "x" + std::to_string(options.height)),
-      alpha_(shortest(options.alpha)),
-      up_(),
-      blend_(blend_text(options)),
-      samples_(std::to_string(options.quality.samples)),
-      resolve_(options.quality.resolve == Resolve::per_pixel ? "pixel" : "sample"),
-      depth_scale_(options.quality.depth_scale == DepthScale::linear ? "linear" : "reversed"),
-      view_(shortest(options.orbit.azimuth_degrees) + "," +
-            shortest(options.orbit.elevation_degrees)),
-      eyes_(options.eye_separation ? shortest(*options.eye_separation) : ""),
-      time_(shortest(options.time)),
-      device_(options.device),
-      depth_range_(options.quality.depth_range),
-      opaque_floor_(options.opaque_floor) {
-    const auto add = [&](const char* name, std::string& value, const char* what, const char* type) {
-        add_option(app, name, value, what, type);
-    };
-    app.add_option("scene", scene_,
-                   "mesh files (OBJ, PLY, STL, glTF, ...), each with an opacity of its own if "
-                   "ALPHA is given; or a scene")
-        ->type_name("MESH[:ALPHA]...|SCENE");
-    add("--size", size_, "image size in pixels", "WxH");
-    add("--alpha", alpha_, "opacity of surfaces whose file gives none, 0 to 1", "A");
-    add("--up", up_,
-        "axis that points up in the mesh files: x, y or z; by default, each file decides", "AXIS");
-    add("--blend", blend_,
-        "how surfaces blend: over, additive, multiplicative, absorb, or a file with a function",
-        "KIND|FILE");
-    add("--samples", samples_, "samples of a pixel: 1, 2, 4 or 8", "N");
-    add("--resolve", resolve_, "where samples are blended: pixel or sample", "WHERE");
-    app.add_flag("--depth-range", depth_range_,
-                 "order surfaces that meet within a pixel by their depths in each sample");
-    add("--depth-scale", depth_scale_, "stored depth: linear (the depth) or reversed (1 / depth)",
-        "S");
-    add("--view", view_, "direction to look from, in degrees", "AZIMUTH,ELEVATION");
-    add("--stereo", eyes_, "draw two eyes at this distance; the scene has radius 1", "DISTANCE");
-    add("--time", time_, "time of an animated scene, in seconds", "T");
-    app.add_flag("--opaque-floor", opaque_floor_, "stand the scene on an opaque floor");
-    add("--device", device_,
-        "device, by index or part of its name; the default is CELLIST_DEVICE, a GPU, or the first",
-        "D");
-}
-
-void FrameArguments::read(FrameOptions& options) const {
-    if (scene_.empty()) throw InputError("no mesh or scene given (see --help)");
-    options.scene = scene_.front();
-    options.more_meshes.assign(scene_.begin() + 1, scene_.end());
-    options.up = read_up(up_);
-    for (const std::string& argument : scene_) {
-        const SceneInfo* scene = find_scene(argument.substr(0, argument.rfind(':')));
-        if (find_scene(argument) != nullptr && scene_.size() > 1)
-            throw InputError("the scene '" + argument +
-                             "' is drawn alone: leave out the other meshes and scenes");
-        std::error_code error;
-        if (scene != nullptr && scene->name != argument &&
-            !std::filesystem::exists(argument, error) &&
-            !std::filesystem::exists(std::string(scene->name), error))
-            throw InputError("'" + argument + "': the scene " + std::string(scene->name) +
-                             " takes its opacity from --alpha");
-    }
-    if (options.up && find_scene(options.scene) != nullptr)
-        throw InputError("--up turns mesh files, and '" + options.scene + "' is a scene");
-    options.device = device_;
-    options.opaque_floor = opaque_floor_;
-    read_size(size_, options);
-    options.alpha =
-        static_cast<float>(read_between("--alpha", alpha_, 0, 1, "a number from 0 to 1"));
-    read_blend(blend_, options);
-    read_samples(samples_, options);
-    read_resolve(resolve_, options);
-    read_depth_scale(depth_scale_, options);
-    read_view(view_, options);
-    if (!eyes_.empty())
-        options.eye_separation = read_between("--stereo", eyes_, 0, 1, "a distance from 0 to 1");
-    options.time = read_between("--time", time_, -1e6, 1e6, "seconds from -1000000 to 1000000");
-    options.quality.depth_range = depth_range_;
-    const bool one_sample = options.quality.samples == 1;
-    const SceneInfo* scene = find_scene(options.scene);
-    const support::IdleOption idle[] = {
-        {"--depth-range", one_sample,
-         "--depth-range needs several samples: add --samples 2, 4 or 8"},
-        {"--alpha", scene != nullptr && !scene->takes_alpha,
-         "--alpha: the surfaces of '" + options.scene + "' have opacities of their own"},
-        {"--resolve", one_sample, "--resolve needs several samples: add --samples 2, 4 or 8"},
-    };
-    support::refuse_idle_options(app_, idle);
+void add_frame_options(support::CommandLine& line, FrameOptions& options) {
+    using Text = const std::string&;
+    line.add_arguments("scene",
+                       "mesh files (OBJ, PLY, STL, glTF, ...), each with an opacity of its own if "
+                       "ALPHA is given; or a scene",
+                       "MESH[:ALPHA]...|SCENE", [&](const std::vector<std::string>& arguments) {
+                           if (arguments.empty())
+                               throw InputError("no mesh or scene given (see --help)");
+                           options.scene = arguments.front();
+                           options.more_meshes.assign(arguments.begin() + 1, arguments.end());
+                       });
+    line.add("--size", std::to_string(options.width) + "x" + std::to_string(options.height),
+             "image size in pixels", "WxH", [&](Text text) { read_size(text, options); });
+    line.add("--alpha", shortest(options.alpha),
+             "opacity of surfaces whose file gives none, 0 to 1", "A", [&](Text text) {
+                 options.alpha = static_cast<float>(
+                     support::read_between("--alpha", text, 0, 1, "a number from 0 to 1"));
+             });
+    line.add("--up", "",
+             "axis that points up in the mesh files: x, y or z; by default, each file decides",
+             "AXIS", [&](Text text) { options.up = read_up(text); });
+    line.add("--blend", blend_text(options),
+             "how surfaces blend: over, additive, multiplicative, absorb, or a file with a "
+             "function",
+             "KIND|FILE", [&](Text text) { read_blend(text, options); });
+    line.add("--samples", std::to_string(options.quality.samples),
+             "samples of a pixel: 1, 2, 4 or 8", "N",
+             [&](Text text) { read_samples(text, options); });
+    line.add("--resolve", options.quality.resolve == Resolve::per_pixel ? "pixel" : "sample",
+             "where samples are blended: pixel or sample", "WHERE",
+             [&](Text text) { read_resolve(text, options); });
+    line.add_flag("--depth-range", options.quality.depth_range,
+                  "order surfaces that meet within a pixel by their depths in each sample");
+    line.add("--depth-scale",
+             options.quality.depth_scale == DepthScale::linear ? "linear" : "reversed",
+             "stored depth: linear (the depth) or reversed (1 / depth)", "S",
+             [&](Text text) { read_depth_scale(text, options); });
+    line.add(
+        "--view",
+        shortest(options.orbit.azimuth_degrees) + "," + shortest(options.orbit.elevation_degrees),
+        "direction to look from, in degrees", "AZIMUTH,ELEVATION",
+        [&](Text text) { read_view(text, options); });
+    line.add("--stereo", options.eye_separation ? shortest(*options.eye_separation) : "",
+             "draw two eyes at this distance; the scene has radius 1", "DISTANCE", [&](Text text) {
+                 options.eye_separation =
+                     support::read_between("--stereo", text, 0, 1, "a distance from 0 to 1");
+             });
+    line.add("--time", shortest(options.time), "time of an animated scene, in seconds", "T",
+             [&](Text text) {
+                 options.time = support::read_between("--time", text, -1e6, 1e6,
+                                                      "seconds from -1000000 to 1000000");
+             });
+    line.add_flag("--opaque-floor", options.opaque_floor, "stand the scene on an opaque floor");
+    line.add_device(options.device);
+    line.add_check([&] {
+        check_scene(options);
+        refuse_idle_options(line, options);
+    });
 }
 
 cellist::Device choose_device(const FrameOptions& options) {
@@ -384,7 +369,7 @@ std::string title_of(const FrameOptions& options) {
 void stand_on_floor(Scene& scene, const FrameOptions& options) {
     if (!options.opaque_floor) return;
     for (const raster::View& view : make_views(options))
-        if (view.eye[1] > scene.look.floor_height) {
+        if (view.eye[1] > scene.lighting.floor_height) {
             add_floor(scene);
             return;
         }

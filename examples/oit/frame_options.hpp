@@ -14,8 +14,8 @@
 #include "frame/frame.hpp"
 #include "mesh.hpp"
 
-namespace CLI {
-class App;
+namespace support {
+class CommandLine;
 }
 
 namespace oit {
@@ -39,35 +39,12 @@ struct FrameOptions {
     std::vector<std::string> arguments = {};  ///< of the program, for its report
 };
 
-/// The texts of these options on a command line.
-class FrameArguments {
-public:
-    /// Adds the options to `app`, which must outlive it, `options` being their defaults.
-    FrameArguments(CLI::App& app, const FrameOptions& options);
-
-    /// Reads and checks what has been parsed, and the file of a blend function. Throws InputError
-    /// where an argument cannot be used, or has no effect.
-    void read(FrameOptions& options) const;
-
-private:
-    const CLI::App& app_;
-    std::vector<std::string> scene_;
-    std::string size_, alpha_, up_, blend_, samples_, resolve_, depth_scale_, view_, eyes_, time_,
-        device_;
-    bool depth_range_;
-    bool opaque_floor_;
-};
+/// Adds these options to a command line, which reads and checks them: options whose argument cannot be
+/// used, or has no effect, throw InputError. Refers to both until the line is parsed.
+void add_frame_options(support::CommandLine& line, FrameOptions& options);
 
 /// The text of --blend; empty where the scene decides.
 [[nodiscard]] std::string blend_text(const FrameOptions& options);
-
-/// Adds an option with a text to a command line; what it has is its default.
-void add_option(CLI::App& app, const char* name, std::string& value, const char* what,
-                const char* type);
-
-/// The text of an option as a number. Throws InputError unless least <= number <= most.
-[[nodiscard]] double read_between(const std::string& option, const std::string& text, double least,
-                                  double most, const std::string& expected);
 
 /// A file, and how messages name it: for the most part by the option that it was given with.
 struct NamedFile {

@@ -8,7 +8,7 @@
 
 #include <cellist/cellist.hpp>
 
-#include "budget/keeper.hpp"
+#include "budget/budget_controller.hpp"
 #include "command_line.hpp"
 #include "files.hpp"
 #include "frame/frame.hpp"
@@ -132,15 +132,15 @@ void draw_with_method(oit::Report& report, oit::Renderer& renderer, oit::Frame& 
     report.passes = draw_passes(renderer, report.options.frames);
 }
 
-void draw_within_budget(oit::Report& report, oit::Keeper& keeper, oit::Frame& frame) {
-    oit::KeptBudget& kept = report.kept;
+void draw_within_budget(oit::Report& report, oit::BudgetController& controller, oit::Frame& frame) {
+    oit::BudgetRecord& record = report.record;
     report.times.add(draw_frames(frame, report.options, [&] {
-        const oit::Keeper::Drawn drawn = keeper.draw();
-        kept.add(drawn, frame.time, *report.options.budget);
-        return Drawn(drawn.frame_ms, &keeper.renderer());
+        const oit::BudgetController::Drawn drawn = controller.draw();
+        record.add(drawn, frame.time, *report.options.budget);
+        return Drawn(drawn.frame_ms, &controller.renderer());
     }));
-    report.passes = draw_passes(keeper.renderer(), report.options.frames);
-    report.choice = keeper.choice();
+    report.passes = draw_passes(controller.renderer(), report.options.frames);
+    report.choice = controller.choice();
     report.options.method = report.choice->setting.method->name;
     report.options.quality = report.choice->setting.quality;
 }
@@ -156,7 +156,7 @@ void write(oit::Report& report, const oit::Frame& frame, const oit::Renderer& re
     const oit::Options& options = report.options;
     if (oit::method_named(options.method).has_nodes)
         report.node_bytes = 4 * renderer.layout().words;
-    report.colour_max = renderer.needs().colour_max;
+    report.colour_max = renderer.features().colour_max;
     const std::vector<cl_float4> image = renderer.image();
     report.pixels_nan = oit::count_nan(image);
     if (!options.out.has_number()) write_picture(options, frame, image, 1);
@@ -197,12 +197,13 @@ int run(const oit::Options& options) {
         choosing->update(part);
         if (part == 1) choosing.reset();
     };
-    oit::Keeper keeper(device, frame, *options.budget, options.check_every,
-                       {.progress = show_choosing, .seconds = options.search_seconds});
-    draw_within_budget(report, keeper, frame);
+    oit::BudgetController controller(
+        device, frame, *options.budget, options.check_every,
+        {.progress = show_choosing, .seconds = options.search_seconds});
+    draw_within_budget(report, controller, frame);
     // The reference is that of all layers.
-    write(report, frame, keeper.renderer());
-    return report.kept.met() ? 0 : 2;
+    write(report, frame, controller.renderer());
+    return report.record.met() ? 0 : 2;
 }
 
 }  // namespace
@@ -211,7 +212,7 @@ int main(int count, char** arguments) {
     int exit_code = 0;
     const int failed = support::run_program("cellist-oit", [&] {
         const oit::Options options = oit::parse_options(count, arguments);
-        if (options.help)
+        if (!options.help_text.empty())
             std::cout << options.help_text;
         else
             exit_code = run(options);

@@ -6,8 +6,6 @@
 #include <string_view>
 #include <utility>
 
-#include <CLI/CLI.hpp>
-
 #include "budget/setting.hpp"
 #include "command_line.hpp"
 #include "files.hpp"
@@ -56,7 +54,6 @@ void read_reduce(const std::string& text, Options& options) {
 
 // A number of bytes, or of a unit of them.
 void read_memory(const std::string& text, Options& options) {
-    if (text.empty()) return;
     constexpr std::pair<std::string_view, int> units[] = {
         {"KiB", 10}, {"MiB", 20}, {"GiB", 30}, {"", 0}};
     for (const auto& [unit, shift] : units) {
@@ -86,7 +83,7 @@ void check_outputs(const Options& options) {
 }
 
 // Options that have no effect with the other options, or contradict them.
-void refuse_idle_options(const CLI::App& app, const Options& options) {
+void refuse_idle_options(const support::CommandLine& line, const Options& options) {
     const bool has_budget = options.budget.has_value(), one_frame = options.frames == 1;
     const bool has_nodes = method_named(options.method).has_nodes;
     const auto chosen = [&](const char* name) {
@@ -131,7 +128,7 @@ void refuse_idle_options(const CLI::App& app, const Options& options) {
         {"--check-every", !options.moves(),
          "--check-every is for frames that change: add --until or --turn"},
     };
-    support::refuse_idle_options(app, table);
+    line.refuse_idle(table);
 }
 
 }  // namespace
@@ -142,90 +139,79 @@ bool Options::writes_to_stdout() const {
 }
 
 Options parse_options(int count, const char* const* arguments) {
+    using Text = const std::string&;
     Options options;
-    std::string method = options.method, format(name_of(options.quality.format)), layers = "all",
-                epsilon = shortest(options.quality.epsilon);
-    std::string reduce = std::to_string(options.quality.reduce), memory, budget,
-                check_every = std::to_string(options.check_every),
-                search_seconds = shortest(options.search_seconds);
+    support::CommandLine line("cellist-oit",
+                              "Draws a mesh or a scene with order-independent transparency.");
+    add_frame_options(line, options);
+    line.add("--method", options.method, "transparency method, from the list below", "M[:SIZE]",
+             [&](Text text) { read_method(text, options); });
+    line.add("--layers", "all", "nearest layers to blend", "K|all",
+             [&](Text text) { read_layers(text, options); });
+    line.add("--epsilon", shortest(options.quality.epsilon),
+             "stop blending when no more than this part of the light passes", "E", [&](Text text) {
+                 options.quality.epsilon = static_cast<float>(
+                     support::read_between("--epsilon", text, 0, 1, "a number from 0 to 1"));
+             });
+    line.add("--format", std::string(name_of(options.quality.format)),
+             "format of colour and depth in a fragment", "F",
+             [&](Text text) { read_format(text, options); });
+    line.add("--reduce", std::to_string(options.quality.reduce),
+             "draw transparent surfaces with 2 or 4 times fewer pixels a side, and enlarge them",
+             "N", [&](Text text) { read_reduce(text, options); });
+    line.add("--memory", "",
+             "limit on the device memory of the method, such as 64MiB; lists are drawn in slices",
+             "BYTES", [&](Text text) { read_memory(text, options); });
+    line.add("--budget", "",
+             "find the cheapest setting with at least this PSNR, or at most this error",
+             "40dB|1/255", [&](Text text) { options.budget = parse_budget(text); });
+    line.add_number("--check-every", options.check_every, 1, 1'000'000,
+                    "check each N-th changed frame against the budget");
+    line.add("--search-seconds", shortest(options.search_seconds),
+             "time limit of the search for a setting within the budget", "S", [&](Text text) {
+                 options.search_seconds = support::read_between("--search-seconds", text, 0, 1e6,
+                                                                "seconds from 0 to 1000000");
+             });
     bool strict = false;
-    std::string until, turn = shortest(options.turn_degrees),
-                       frames = std::to_string(options.frames), out = options.out.path().string(),
-                       write_reference, write_difference, json;
-    CLI::App app{"Draws a mesh or a scene with order-independent transparency.", "cellist-oit"};
-    const auto add = [&](const char* name, std::string& value, const char* what, const char* type) {
-        add_option(app, name, value, what, type);
-    };
-    const FrameArguments frame(app, options);
-    add("--method", method, "transparency method, from the list below", "M[:SIZE]");
-    add("--layers", layers, "nearest layers to blend", "K|all");
-    add("--epsilon", epsilon, "stop blending when no more than this part of the light passes", "E");
-    add("--format", format, "format of colour and depth in a fragment", "F");
-    add("--reduce", reduce,
-        "draw transparent surfaces with 2 or 4 times fewer pixels a side, and enlarge them", "N");
-    add("--memory", memory,
-        "limit on the device memory of the method, such as 64MiB; lists are drawn in slices",
-        "BYTES");
-    add("--budget", budget,
-        "find the cheapest setting with at least this PSNR, or at most this error", "40dB|1/255");
-    add("--check-every", check_every, "check each N-th changed frame against the budget", "N");
-    add("--search-seconds", search_seconds,
-        "time limit of the search for a setting within the budget", "S");
-    app.add_flag("--strict", strict,
-                 "also apply the budget to undecided pixels, where float depths do not tell the "
-                 "order of layers");
-    add("--until", until, "time of the last frame, in seconds; the first is at --time", "T");
-    add("--turn", turn, "turn the camera from the first frame to the last", "DEGREES");
-    app.add_flag("--reference", options.reference,
-                 "compare with a rendering in double precision on the CPU");
-    add("--out", out,
-        "picture to write: .png, .jpg, .pfm or .exr, - for stdout; all frames as frame-%04d.png",
+    line.add_flag("--strict", strict,
+                  "also apply the budget to undecided pixels, where float depths do not tell the "
+                  "order of layers");
+    line.add("--until", "", "time of the last frame, in seconds; the first is at --time", "T",
+             [&](Text text) {
+                 options.until = support::read_between("--until", text, -1e6, 1e6,
+                                                       "seconds from -1000000 to 1000000");
+             });
+    line.add("--turn", shortest(options.turn_degrees),
+             "turn the camera from the first frame to the last", "DEGREES", [&](Text text) {
+                 options.turn_degrees = support::read_between("--turn", text, -1e6, 1e6,
+                                                              "degrees from -1000000 to 1000000");
+             });
+    line.add_flag("--reference", options.reference,
+                  "compare with a rendering in double precision on the CPU");
+    line.add("--out", options.out.path().string(),
+             "picture to write: .png, .jpg, .pfm or .exr, - for stdout; all frames as "
+             "frame-%04d.png",
+             "FILE", [&](Text text) { options.out = PictureName(text); });
+    line.add_text("--write-reference", options.write_reference,
+                  "write the rendering in double precision to this file", "FILE");
+    line.add_text(
+        "--write-difference", options.write_difference,
+        "write the difference from that rendering: times 16 in .png and .jpg, unscaled in "
+        ".pfm and .exr",
         "FILE");
-    add("--write-reference", write_reference,
-        "write the rendering in double precision to this file", "FILE");
-    add("--write-difference", write_difference,
-        "write the difference from that rendering: times 16 in .png and .jpg, unscaled in .pfm and "
-        ".exr",
-        "FILE");
-    add("--json", json, "write the metrics to this file", "FILE");
-    add("--frames", frames, "timed frames, after a warm-up; times are medians", "N");
-    app.footer(help_on_tables());
-    if (const auto help = support::parse_command_line(app, count, arguments)) {
-        options.help = true;
-        options.help_text = *help;
-        return options;
-    }
-    frame.read(options);
+    line.add_text("--json", options.json, "write the metrics to this file", "FILE");
+    line.add_number("--frames", options.frames, 1, 1'000'000,
+                    "timed frames, after a warm-up; times are medians");
+    line.add_check([&] {
+        if (options.budget) options.budget->strict = strict;
+        check_outputs(options);
+        refuse_idle_options(line, options);
+    });
+    line.add_footer(help_on_tables());
+    options.help_text = line.parse(count, arguments).value_or("");
     options.arguments.assign(arguments + 1, arguments + count);
-    options.out = PictureName(out);
-    options.write_reference = write_reference;
-    options.write_difference = write_difference;
-    options.json = json;
-    check_outputs(options);
-    options.reference = options.reference || !write_reference.empty() || !write_difference.empty();
-    if (!budget.empty()) {
-        options.budget = parse_budget(budget);
-        options.budget->strict = strict;
-    }
-    options.check_every = static_cast<std::uint32_t>(
-        support::read_number("--check-every", check_every, 1, 1'000'000));
-    options.search_seconds =
-        read_between("--search-seconds", search_seconds, 0, 1e6, "seconds from 0 to 1000000");
-    if (!until.empty())
-        options.until =
-            read_between("--until", until, -1e6, 1e6, "seconds from -1000000 to 1000000");
-    options.turn_degrees =
-        read_between("--turn", turn, -1e6, 1e6, "degrees from -1000000 to 1000000");
-    read_method(method, options);
-    read_layers(layers, options);
-    read_format(format, options);
-    read_reduce(reduce, options);
-    read_memory(memory, options);
-    options.quality.epsilon =
-        static_cast<float>(read_between("--epsilon", epsilon, 0, 1, "a number from 0 to 1"));
-    options.frames =
-        static_cast<std::uint32_t>(support::read_number("--frames", frames, 1, 1'000'000));
-    refuse_idle_options(app, options);
+    options.reference =
+        options.reference || !options.write_reference.empty() || !options.write_difference.empty();
     return options;
 }
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "budget/chooser.hpp"
+#include "budget/budget_search.hpp"
 #include "frame_options.hpp"
 #include "report/picture_name.hpp"
 
@@ -31,8 +31,7 @@ struct Options : FrameOptions {
     /// Whether a file goes to stdout, so that the report goes to stderr.
     [[nodiscard]] bool writes_to_stdout() const;
 
-    bool help = false;
-    std::string help_text = {};
+    std::string help_text = {};  ///< to be printed instead, where it is not empty
 };
 
 /// Reads and checks the command line, with the paths of the output, and the file of a blend function.

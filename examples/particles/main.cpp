@@ -5,8 +5,6 @@
 #include <limits>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include <cellist/cellist.hpp>
 
 #include "command_line.hpp"
@@ -18,13 +16,13 @@
 namespace {
 
 struct Options {
-    std::size_t points = 0;
+    std::size_t points = 1'000'000;
     particles::Box box = particles::Box::periodic;
     cellist::Storage storage = cellist::Storage::counted;
     int cells_per_radius = 1;
-    std::size_t check = 0;
-    std::uint64_t runs = 0;
-    std::uint32_t seed = 0;
+    std::size_t check = 50'000;
+    std::uint64_t runs = 3;
+    std::uint32_t seed = 1;
     std::string device;
     std::string help;
 };
@@ -36,49 +34,28 @@ particles::Box read_box(const std::string& text) {
 }
 
 Options parse_options(int count, const char* const* arguments) {
-    using support::read_number;
     Options options;
-    std::string points = "1000000", box = "periodic", storage = "counted", cells = "1",
-                check = "50000", runs = "3", seed = "1";
-    CLI::App app{"Finds all neighbours of points within a radius, through per-cell lists.",
-                 "particles"};
-    app.add_option("--points", points, "number of points; each has about 30 neighbours")
-        ->type_name("N")
-        ->capture_default_str();
-    app.add_option("--box", box, "boundary of space")
-        ->type_name("periodic|open")
-        ->capture_default_str();
-    app.add_option("--storage", storage, "storage of the lists")
-        ->type_name("linked|counted|fixed")
-        ->capture_default_str();
-    app.add_option("--cells", cells, "cells along the radius")
-        ->type_name("1..4")
-        ->capture_default_str();
-    app.add_option("--check", check, "greatest number of points to check on the CPU")
-        ->type_name("N|all")
-        ->capture_default_str();
-    app.add_option("--runs", runs, "timed runs, after a warm-up; the fastest counts")
-        ->type_name("N")
-        ->capture_default_str();
-    app.add_option("--seed", seed, "seed of the random numbers")
-        ->type_name("N")
-        ->capture_default_str();
-    app.add_option("--device", options.device,
-                   "device, by index or part of its name; the default is CELLIST_DEVICE, a GPU, or "
-                   "the first")
-        ->type_name("D");
-    if (const auto help = support::parse_command_line(app, count, arguments)) {
-        options.help = *help;
-        return options;
-    }
-    options.points = read_number("--points", points, 0, 100'000'000);
-    options.box = read_box(box);
-    options.storage = support::read_storage("--storage", storage);
-    options.cells_per_radius = static_cast<int>(read_number("--cells", cells, 1, 4));
-    options.check = check == "all" ? options.points : read_number("--check", check, 0, 0xFFFFFFFF);
+    support::CommandLine line("particles",
+                              "Finds all neighbours of points within a radius, through per-cell "
+                              "lists.");
+    line.add_number("--points", options.points, 0, 100'000'000,
+                    "number of points; each has about 30 neighbours");
+    line.add("--box", "periodic", "boundary of space", "periodic|open",
+             [&](const std::string& text) { options.box = read_box(text); });
+    line.add_storage(options.storage);
+    line.add_number("--cells", options.cells_per_radius, 1, 4, "cells along the radius", "1..4");
+    line.add(
+        "--check", std::to_string(options.check), "greatest number of points to check on the CPU",
+        "N|all", [&](const std::string& text) {
+            options.check = text == "all" ? options.points
+                                          : support::read_number("--check", text, 0, 0xFFFFFFFF);
+        });
+    line.add_number("--runs", options.runs, 1, 1'000'000,
+                    "timed runs, after a warm-up; the fastest counts");
+    line.add_seed(options.seed);
+    line.add_device(options.device);
+    options.help = line.parse(count, arguments).value_or("");
     options.check = std::min(options.check, options.points);
-    options.runs = read_number("--runs", runs, 1, 1'000'000);
-    options.seed = static_cast<std::uint32_t>(read_number("--seed", seed, 0, 0xFFFFFFFF));
     return options;
 }
 

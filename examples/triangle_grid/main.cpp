@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include <cellist/cellist.hpp>
 
 #include "command_line.hpp"
@@ -29,65 +27,43 @@ namespace {
 struct Options {
     std::filesystem::path mesh;
     std::filesystem::path out;
-    int grid = 0;
+    int grid = 64;
     cellist::Storage storage = cellist::Storage::counted;
-    std::size_t segments = 0;
-    std::size_t check = 0;
-    std::uint32_t seed = 0;
+    std::size_t segments = 1'000'000;
+    std::size_t check = 3000;
+    std::uint32_t seed = 1;
     std::string device;
     std::string help;
 };
 
 Options parse_options(int count, const char* const* arguments) {
-    using support::read_number;
     Options options;
-    std::string mesh, out, grid = "64", storage = "counted", segments = "1000000", check = "3000",
-                           seed = "1";
-    CLI::App app{
-        "Puts the triangles of a mesh into a 3D grid, and finds the segments that meet a triangle.",
-        "triangle_grid"};
-    app.add_option("mesh", mesh, "mesh file (PLY, OBJ, glTF, STL, OFF, ...); the default is a knot")
-        ->type_name("MESH");
-    app.add_option("--grid", grid, "cells along the longest side of the mesh")
-        ->type_name("N")
-        ->capture_default_str();
-    app.add_option("--storage", storage, "storage of the lists")
-        ->type_name("linked|counted|fixed")
-        ->capture_default_str();
-    app.add_option("--segments", segments, "number of segments")
-        ->type_name("N")
-        ->capture_default_str();
-    app.add_option("--check", check, "greatest number of segments to check on the CPU")
-        ->type_name("N|all")
-        ->capture_default_str();
-    app.add_option(
-           "--out", out,
-           "draw the mesh with shadows and write the picture here: .png, .jpg, .pfm or .exr")
-        ->type_name("FILE");
-    app.add_option("--seed", seed, "seed of the random numbers")
-        ->type_name("N")
-        ->capture_default_str();
-    app.add_option("--device", options.device,
-                   "device, by index or part of its name; the default is CELLIST_DEVICE, a GPU, or "
-                   "the first")
-        ->type_name("D");
-    if (const auto help = support::parse_command_line(app, count, arguments)) {
-        options.help = *help;
-        return options;
-    }
-    options.mesh = mesh;
-    options.out = out;
-    if (!out.empty()) {
-        support::check_output_path(out);
-        (void)support::image_format(out);
-    }
-    options.grid = static_cast<int>(read_number("--grid", grid, 1, GRID_EXTENT_MAX));
-    options.storage = support::read_storage("--storage", storage);
-    options.segments = read_number("--segments", segments, 0, 100'000'000);
-    options.check =
-        check == "all" ? options.segments : read_number("--check", check, 0, 0xFFFFFFFF);
+    support::CommandLine line("triangle_grid",
+                              "Puts the triangles of a mesh into a 3D grid, and finds the segments "
+                              "that meet a triangle.");
+    line.add_text("mesh", options.mesh,
+                  "mesh file (PLY, OBJ, glTF, STL, OFF, ...); the default is a knot", "MESH");
+    line.add_number("--grid", options.grid, 1, GRID_EXTENT_MAX,
+                    "cells along the longest side of the mesh");
+    line.add_storage(options.storage);
+    line.add_number("--segments", options.segments, 0, 100'000'000, "number of segments");
+    line.add(
+        "--check", std::to_string(options.check), "greatest number of segments to check on the CPU",
+        "N|all", [&](const std::string& text) {
+            options.check = text == "all" ? options.segments
+                                          : support::read_number("--check", text, 0, 0xFFFFFFFF);
+        });
+    line.add("--out", "",
+             "draw the mesh with shadows and write the picture here: .png, .jpg, .pfm or .exr",
+             "FILE", [&](const std::string& text) {
+                 support::check_output_path(text);
+                 (void)support::image_format(text);
+                 options.out = text;
+             });
+    line.add_seed(options.seed);
+    line.add_device(options.device);
+    options.help = line.parse(count, arguments).value_or("");
     options.check = std::min(options.check, options.segments);
-    options.seed = static_cast<std::uint32_t>(read_number("--seed", seed, 0, 0xFFFFFFFF));
     return options;
 }
 

@@ -72,7 +72,7 @@ std::vector<Case> all_cases() {
 }  // namespace
 
 void measure_accuracy(Run& run) {
-    run.measure("accuracy", all_cases(), [&](const Stage& stage) -> std::vector<Run::Figure> {
+    run.measure("accuracy", all_cases(), [&](const Stage& stage) -> std::vector<Run::Row> {
         oit::Renderer renderer(run.device(), stage.frame);
         renderer.draw();
         const oit::Reference reference = oit::draw_reference(stage.frame);
@@ -92,7 +92,7 @@ void measure_accuracy(Run& run) {
                  {"pixels_with_other_count", c.pixels_with_other_count},
                  {"pixels_nan", c.pixels_nan},
                  {"max_abs_error", c.max_abs_error},
-                 {"psnr_db", equal ? Run::Figure(nullptr) : Run::Figure(c.psnr_db)}}};
+                 {"psnr_db", equal ? Run::Row(nullptr) : Run::Row(c.psnr_db)}}};
     });
 }
 

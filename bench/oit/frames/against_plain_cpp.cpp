@@ -29,14 +29,14 @@ double check_picture(PlainCpp& plain, const oit::Frame& frame) {
 void measure_plain_cpp(Run& run) {
     const std::array cases{mesh_case("teapot.obj"), mesh_case("dragon.ply"),
                            gearworks_of_most_layers()};
-    run.measure("plain_cpp", cases, [&](const Stage& stage) -> std::vector<Run::Figure> {
+    run.measure("plain_cpp", cases, [&](const Stage& stage) -> std::vector<Run::Row> {
         PlainCpp plain(stage.frame);
         const double psnr_db = check_picture(plain, stage.frame);
         oit::Renderer renderer(run.device(), stage.frame);
         renderer.warm_up();
         const std::array<std::function<double()>, 2> drawings{[&] { return plain.draw(); },
                                                               [&] { return renderer.draw(); }};
-        const std::vector<Samples> times = run.draw_by_turns(drawings);
+        const std::vector<Samples> times = run.draw_interleaved(drawings);
         return {{{"ratio", times[0].median / times[1].median},
                  {"psnr_db", psnr_db},
                  {"plain_cpp", to_json(times[0])},

@@ -42,20 +42,20 @@ void measure_exact_methods(Run& run) {
         std::vector<std::function<double()>> drawings;
         for (const Contender& contender : all)
             drawings.emplace_back([&] { return contender.renderer->draw(); });
-        const std::vector<Samples> times = run.draw_by_turns(drawings);
+        const std::vector<Samples> times = run.draw_interleaved(drawings);
 
         const oit::MethodInfo* const linked = oit::exact_setting(stage.frame.quality).method;
         double linked_time = 0;
         for (std::size_t i = 0; i < all.size(); ++i)
             if (all[i].method == linked) linked_time = times[i].median;
-        std::vector<Run::Figure> figures;
+        std::vector<Run::Row> rows;
         for (std::size_t i = 0; i < all.size(); ++i) {
-            Run::Figure figure{{"method", all[i].method->name},
-                               {"times_linked", times[i].median / linked_time}};
-            figure.update(to_json(times[i]));
-            figures.push_back(std::move(figure));
+            Run::Row row{{"method", all[i].method->name},
+                         {"times_linked", times[i].median / linked_time}};
+            row.update(to_json(times[i]));
+            rows.push_back(std::move(row));
         }
-        return figures;
+        return rows;
     });
 }
 

@@ -51,25 +51,25 @@ void measure_fewer_layers(Run& run) {
         };
         add({});
         for (const std::uint32_t layers : layer_counts) add(layers);
-        const std::vector<Samples> times = run.draw_by_turns(drawings);
+        const std::vector<Samples> times = run.draw_interleaved(drawings);
 
         const oit::Renderer& all = drawn.front()->renderer;
         const oit::Reference reference = reference_of(all, stage.frame);
-        std::vector<Run::Figure> figures;
+        std::vector<Run::Row> rows;
         for (std::size_t i = 0; i < drawn.size(); ++i) {
             const auto& layers = drawn[i]->frame.quality.layers;
             const oit::Comparison comparison =
                 oit::compare(reference, drawn[i]->renderer.image(), {});
-            Run::Figure figure{
-                {"layers", layers ? Run::Figure(*layers) : Run::Figure("all")},
+            Run::Row row{
+                {"layers", layers ? Run::Row(*layers) : Run::Row("all")},
                 {"most_layers", all.method().lengths()->longest},
                 {"speed_up", times.front().median / times[i].median},
-                {"psnr_db", std::isfinite(comparison.psnr_db) ? Run::Figure(comparison.psnr_db)
-                                                              : Run::Figure(nullptr)}};
-            figure.update(to_json(times[i]));
-            figures.push_back(std::move(figure));
+                {"psnr_db", std::isfinite(comparison.psnr_db) ? Run::Row(comparison.psnr_db)
+                                                              : Run::Row(nullptr)}};
+            row.update(to_json(times[i]));
+            rows.push_back(std::move(row));
         }
-        return figures;
+        return rows;
     });
 }
 

@@ -23,7 +23,7 @@ Samples time_two_at_once(const Run& run, oit::Renderer& one, oit::Renderer& othe
         renderers[before]->finish();
         return stopwatch.ms();
     };
-    const Samples times = run.draw_by_turns({&next, 1}).front();
+    const Samples times = run.draw_interleaved({&next, 1}).front();
     renderers[started]->finish();
     return times;
 }
@@ -36,19 +36,19 @@ void measure_frame_times(Run& run) {
         mesh_case("teapot.obj"), dragon,
         with(dragon, "4 samples", [](auto& options) { options.quality.samples = 4; }),
         gearworks_of_most_layers()};
-    run.measure("frame_times", cases, [&](const Stage& stage) -> std::vector<Run::Figure> {
+    run.measure("frame_times", cases, [&](const Stage& stage) -> std::vector<Run::Row> {
         oit::Renderer renderer(run.device(), stage.frame);
         renderer.warm_up();
         const std::function<double()> draw = [&] { return renderer.draw(); };
-        Run::Figure figure = to_json(run.draw_by_turns({&draw, 1}).front());
+        Run::Row row = to_json(run.draw_interleaved({&draw, 1}).front());
         oit::Renderer other(run.device(), stage.frame);
         other.warm_up();
-        figure["two_at_once"] = to_json(time_two_at_once(run, renderer, other));
+        row["two_at_once"] = to_json(time_two_at_once(run, renderer, other));
         if (const auto lengths = renderer.method().lengths()) {
-            figure["fragments"] = lengths->total;
-            figure["most_layers"] = lengths->longest;
+            row["fragments"] = lengths->total;
+            row["most_layers"] = lengths->longest;
         }
-        return {figure};
+        return {row};
     });
 }
 

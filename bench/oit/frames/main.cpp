@@ -4,8 +4,6 @@
 #include <iostream>
 #include <thread>
 
-#include <CLI/CLI.hpp>
-
 #include "command_line.hpp"
 #include "files.hpp"
 #include "oit/frames/run.hpp"
@@ -21,30 +19,26 @@ struct Options : bench::RunOptions {
 
 Options parse(int count, const char* const* arguments) {
     Options options;
-    std::string size = oit::shortest(options.size), frames = std::to_string(options.frames), meshes,
-                json;
-    CLI::App app{
-        "Measures the times of whole frames, exact methods, fewer layers and plain C++, and the "
-        "accuracy of all layers.",
-        "cellist-oit-frames"};
-    oit::add_option(app, "--meshes", meshes, "folder with teapot.obj and dragon.ply", "FOLDER");
-    oit::add_option(app, "--json", json, "write the metrics to this file", "FILE");
-    oit::add_option(app, "--git", options.git, "the commit to record in the results", "HASH");
-    oit::add_option(app, "--filter", options.filter,
-                    "run only what matches this regular expression: SECTION/CASE", "RE");
-    oit::add_option(app, "--size", size, "factor for the sides of all images", "F");
-    oit::add_option(app, "--frames", frames, "timed frames of each kind, after a warm-up", "N");
-    app.footer("Sections: frame_times, exact_methods, fewer_layers, plain_cpp, accuracy\n");
-    if (const auto help = support::parse_command_line(app, count, arguments)) {
-        options.help_text = *help;
-        return options;
-    }
-    options.meshes = meshes;
-    options.json = json;
-    if (!json.empty()) support::check_output_path(json);
-    options.size = oit::read_between("--size", size, 1e-3, 8, "a number from 0.001 to 8");
-    options.frames =
-        static_cast<std::uint32_t>(support::read_number("--frames", frames, 1, 1'000'000));
+    support::CommandLine line("cellist-oit-frames",
+                              "Measures the times of whole frames, exact methods, fewer layers and "
+                              "plain C++, and the accuracy of all layers.");
+    line.add_text("--meshes", options.meshes, "folder with teapot.obj and dragon.ply", "FOLDER");
+    line.add_text("--json", options.json, "write the metrics to this file", "FILE");
+    line.add_text("--git", options.git, "the commit to record in the results", "HASH");
+    line.add_text("--filter", options.filter,
+                  "run only what matches this regular expression: SECTION/CASE", "RE");
+    line.add("--size", oit::shortest(options.size), "factor for the sides of all images", "F",
+             [&](const std::string& text) {
+                 options.size =
+                     support::read_between("--size", text, 1e-3, 8, "a number from 0.001 to 8");
+             });
+    line.add_number("--frames", options.frames, 1, 1'000'000,
+                    "timed frames of each kind, after a warm-up");
+    line.add_check([&] {
+        if (!options.json.empty()) support::check_output_path(options.json);
+    });
+    line.add_footer("Sections: frame_times, exact_methods, fewer_layers, plain_cpp, accuracy\n");
+    options.help_text = line.parse(count, arguments).value_or("");
     return options;
 }
 
@@ -59,7 +53,7 @@ void run(const Options& options) {
 
     const cellist::DeviceInfo& info = device.info();
     const bool gpu = (info.type & CL_DEVICE_TYPE_GPU) != 0;
-    bench::Run::Figure results{
+    bench::Run::Row results{
         {"device", info.name},
         {"platform", info.platform},
         {"driver", info.driver},
@@ -67,7 +61,7 @@ void run(const Options& options) {
         {"threads", gpu ? std::thread::hardware_concurrency() : info.compute_units},
         {"git", options.git},
         {"size", options.size}};
-    results.update(run.figures());
+    results.update(run.rows());
     if (options.json.empty()) {
         std::cout << results.dump(1) << '\n';
         return;

@@ -63,7 +63,7 @@ Run::Run(const cellist::Device& device, const RunOptions& options)
     : device_(device), options_(options), filter_(regex_of(options.filter)) {}
 
 void Run::measure(const std::string& section, std::span<const Case> cases,
-                  const std::function<std::vector<Figure>(const Stage& stage)>& measure) {
+                  const std::function<std::vector<Row>(const Stage& stage)>& measure) {
     for (const auto& [name, asked] : cases) {
         const std::string title = section + "/" + name;
         if (!std::regex_search(title, filter_)) continue;
@@ -80,14 +80,14 @@ void Run::measure(const std::string& section, std::span<const Case> cases,
         }
         try {
             const Stage stage(options);
-            for (const Figure& measured : measure(stage)) {
-                Figure figure{{"case", name},
-                              {"width", options.width},
-                              {"height", options.height},
-                              {"triangles", stage.scene.triangles()}};
-                figure.update(measured);
+            for (const Row& measured : measure(stage)) {
+                Row row{{"case", name},
+                        {"width", options.width},
+                        {"height", options.height},
+                        {"triangles", stage.scene.triangles()}};
+                row.update(measured);
                 std::cerr << title << ' ' << measured << '\n';
-                figures_[section].push_back(std::move(figure));
+                rows_[section].push_back(std::move(row));
             }
         } catch (const std::exception& error) {
             leave_out(title, error.what());
@@ -97,10 +97,11 @@ void Run::measure(const std::string& section, std::span<const Case> cases,
 
 void Run::leave_out(const std::string& what, const std::string& reason) {
     std::cerr << what << " is left out: " << reason << '\n';
-    figures_["left_out"].push_back({{"what", what}, {"reason", reason}});
+    rows_["left_out"].push_back({{"what", what}, {"reason", reason}});
 }
 
-std::vector<Samples> Run::draw_by_turns(std::span<const std::function<double()>> drawings) const {
+std::vector<Samples> Run::draw_interleaved(
+    std::span<const std::function<double()>> drawings) const {
     const auto round = [&] {
         std::vector<double> seconds;
         for (const std::function<double()>& draw : drawings) seconds.push_back(1e-3 * draw());
@@ -109,7 +110,7 @@ std::vector<Samples> Run::draw_by_turns(std::span<const std::function<double()>>
     return sample({.least = options_.frames, .most = options_.frames}, round);
 }
 
-Run::Figure to_json(const Samples& times) {
+Run::Row to_json(const Samples& times) {
     return {{"ms", 1e3 * times.median},
             {"least_ms", 1e3 * times.least},
             {"greatest_ms", 1e3 * times.greatest},

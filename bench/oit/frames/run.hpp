@@ -53,37 +53,37 @@ struct RunOptions {
 /// The measurements of one run on a device.
 class Run {
 public:
-    using Figure = nlohmann::ordered_json;
+    using Row = nlohmann::ordered_json;
 
     /// Refers to the device. Throws InputError if the filter is not a regular expression.
     Run(const cellist::Device& device, const RunOptions& options);
 
-    /// Adds a section: measure(stage) gives the figures of each selected case. Cases that fail and
+    /// Adds a section: measure(stage) gives the rows of each selected case. Cases that fail and
     /// cases without their mesh are left out.
     void measure(const std::string& section, std::span<const Case> cases,
-                 const std::function<std::vector<Figure>(const Stage& stage)>& measure);
+                 const std::function<std::vector<Row>(const Stage& stage)>& measure);
 
     /// Notes what cannot be measured, and why.
     void leave_out(const std::string& what, const std::string& reason);
 
     /// The times of drawings after a warm-up. Each drawing returns its milliseconds. They draw
     /// interleaved, so that a slow phase of the machine slows all of them.
-    [[nodiscard]] std::vector<Samples> draw_by_turns(
+    [[nodiscard]] std::vector<Samples> draw_interleaved(
         std::span<const std::function<double()>> drawings) const;
 
     [[nodiscard]] const cellist::Device& device() const { return device_; }
-    /// A list of figures for each section, and a list of what was left out.
-    [[nodiscard]] const Figure& figures() const { return figures_; }
+    /// A list of rows for each section, and a list of what was left out.
+    [[nodiscard]] const Row& rows() const { return rows_; }
 
 private:
     const cellist::Device& device_;
     RunOptions options_;
     std::regex filter_;
-    Figure figures_ = Figure::object();
+    Row rows_ = Row::object();
 };
 
-/// Milliseconds and number of frames, for a figure.
-[[nodiscard]] Run::Figure to_json(const Samples& times);
+/// Milliseconds and number of frames, for a row.
+[[nodiscard]] Run::Row to_json(const Samples& times);
 
 // The sections.
 void measure_frame_times(Run& run);

@@ -3,8 +3,6 @@
 #include <iterator>
 #include <sstream>
 
-#include <CLI/CLI.hpp>
-
 #include "command_line.hpp"
 #include "input_error.hpp"
 #include "scene/scenes.hpp"
@@ -66,10 +64,9 @@ FrameOptions frame_options(const GridView& view) {
     const std::vector<std::string> arguments = words(view.arguments);
     for (const std::string& argument : arguments) pointers.push_back(argument.c_str());
     FrameOptions options;
-    CLI::App app;
-    const FrameArguments frame(app, options);
-    (void)support::parse_command_line(app, static_cast<int>(pointers.size()), pointers.data());
-    frame.read(options);
+    support::CommandLine line("cellist-oit", "");
+    add_frame_options(line, options);
+    (void)line.parse(static_cast<int>(pointers.size()), pointers.data());
     return options;
 }
 

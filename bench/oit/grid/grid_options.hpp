@@ -19,8 +19,7 @@ struct GridOptions {
     std::filesystem::path json = {};
     std::string git = {};  ///< the commit that the results name
     std::string device = {};
-    bool help = false;
-    std::string help_text = {};
+    std::string help_text = {};  ///< to be printed instead, where it is not empty
 };
 
 /// Reads and checks the command line. Throws InputError where an argument cannot be used.

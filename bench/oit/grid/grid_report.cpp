@@ -11,10 +11,12 @@ namespace {
 
 using nlohmann::ordered_json;
 
-void print_trial(const char* what, const Trial& trial, const Budget& budget, std::ostream& out) {
-    out << "  " << std::left << std::setw(8) << what << std::setw(50) << text(trial.setting)
-        << std::right << std::setw(12) << budget.text_of(trial.errors.told);
-    if (trial.times.runs > 0) out << std::setw(9) << fixed(trial.times.median_ms, 2) << " ms";
+void print_measurement(const char* what, const SettingMeasurement& measurement,
+                       const Budget& budget, std::ostream& out) {
+    out << "  " << std::left << std::setw(8) << what << std::setw(50) << text(measurement.setting)
+        << std::right << std::setw(12) << budget.text_of(measurement.errors.resolved);
+    if (measurement.times.runs > 0)
+        out << std::setw(9) << fixed(measurement.times.median_ms, 2) << " ms";
 }
 
 std::string verdict(const GridCase& grid_case, double most_cost) {
@@ -30,17 +32,17 @@ ordered_json to_json(const PictureError& error) {
     return json;
 }
 
-ordered_json to_json(const Trial& trial) {
-    ordered_json json{{"setting", text(trial.setting)}};
-    if (!trial.failure.empty()) {
-        json["failure"] = trial.failure;
+ordered_json to_json(const SettingMeasurement& measurement) {
+    ordered_json json{{"setting", text(measurement.setting)}};
+    if (!measurement.failure.empty()) {
+        json["failure"] = measurement.failure;
         return json;
     }
-    json["error"] = to_json(trial.errors.told);
-    json["error_with_any_order"] = to_json(trial.errors.all);
-    json["median_ms"] = trial.times.median_ms;
-    json["least_ms"] = trial.times.least_ms;
-    json["runs"] = trial.times.runs;
+    json["error"] = to_json(measurement.errors.resolved);
+    json["error_with_any_order"] = to_json(measurement.errors.all);
+    json["median_ms"] = measurement.times.median_ms;
+    json["least_ms"] = measurement.times.least_ms;
+    json["runs"] = measurement.times.runs;
     return json;
 }
 
@@ -51,7 +53,7 @@ ordered_json to_json(const GridCase& grid_case, double most_cost) {
                       {"cost", grid_case.cost},          {"says_met", choice.met}};
     json["chosen"] = to_json(grid_case.chosen);
     json["best"] = grid_case.best ? to_json(*grid_case.best) : ordered_json(nullptr);
-    json["promised"] = to_json(choice.errors.told);
+    json["promised"] = to_json(choice.errors.resolved);
     json["bounded"] = choice.bounded;
     json["draws"] = choice.draws;
     json["took_ms"] = choice.took_ms;
@@ -61,16 +63,16 @@ ordered_json to_json(const GridCase& grid_case, double most_cost) {
 }  // namespace
 
 bool GridCase::kept() const {
-    return choice.met ? budget.met_by(chosen.errors.told) : !best.has_value();
+    return choice.met ? budget.met_by(chosen.errors.resolved) : !best.has_value();
 }
 
 void print(const GridCase& grid_case, double most_cost, std::ostream& out) {
     out << std::left << std::setw(30) << grid_case.name << verdict(grid_case, most_cost) << '\n';
-    print_trial(grid_case.choice.met ? "chosen" : "closest", grid_case.chosen, grid_case.budget,
-                out);
+    print_measurement(grid_case.choice.met ? "chosen" : "closest", grid_case.chosen,
+                      grid_case.budget, out);
     out << (grid_case.choice.met ? ", " + fixed(grid_case.cost, 2) + " times" : "") << '\n';
     if (grid_case.best) {
-        print_trial("best", *grid_case.best, grid_case.budget, out);
+        print_measurement("best", *grid_case.best, grid_case.budget, out);
         out << '\n';
     }
 }
@@ -91,7 +93,8 @@ ordered_json to_json(const std::vector<GridResult>& results, const GridOptions& 
             {"arguments", result.view->arguments}, {"fragments", result.fragments},
             {"most_layers", result.most_layers},   {"pixels_ambiguous", result.pixels_ambiguous}};
         view["settings"] = ordered_json::array();
-        for (const Trial& trial : result.trials) view["settings"].push_back(to_json(trial));
+        for (const SettingMeasurement& measurement : result.measurements)
+            view["settings"].push_back(to_json(measurement));
         json["views"].push_back(std::move(view));
     }
     return json;

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "budget/chooser.hpp"
+#include "budget/budget_search.hpp"
 #include "cases.hpp"
 #include "grid_options.hpp"
 #include "search.hpp"
@@ -19,9 +19,9 @@ struct GridCase {
     std::string name;
     Budget budget;
     Choice choice = {};
-    Trial chosen = {};               ///< as it was measured beside the best one
-    std::optional<Trial> best = {};  ///< none where no setting keeps the budget
-    double cost = 1;                 ///< median of the chosen one, in medians of the best one
+    SettingMeasurement chosen = {};               ///< as it was measured beside the best one
+    std::optional<SettingMeasurement> best = {};  ///< none where no setting keeps the budget
+    double cost = 1;  ///< median of the chosen one, in medians of the best one
 
     /// Whether the promise is true: the error is within the budget, or no setting can meet it.
     [[nodiscard]] bool kept() const;
@@ -35,7 +35,7 @@ struct GridResult {
     std::uint64_t fragments = 0;
     std::uint64_t most_layers = 0;
     std::uint64_t pixels_ambiguous = 0;
-    std::vector<Trial> trials = {};
+    std::vector<SettingMeasurement> measurements = {};
     std::vector<GridCase> cases = {};
 };
 

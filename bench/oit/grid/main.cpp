@@ -8,7 +8,7 @@
 
 #include <cellist/cellist.hpp>
 
-#include "budget/keeper.hpp"
+#include "budget/budget_controller.hpp"
 #include "cases.hpp"
 #include "command_line.hpp"
 #include "files.hpp"
@@ -20,28 +20,29 @@
 
 namespace {
 
-// Times what was chosen and what is best again, by turns.
-void time_both(oit::Search& search, const oit::Trial& chosen, const oit::Trial& best,
-               oit::GridCase& result) {
-    const oit::Trial* both[] = {&chosen, &best};
+// Times what was chosen and what is best again, interleaved.
+void time_both(oit::ExhaustiveSearch& search, const oit::SettingMeasurement& chosen,
+               const oit::SettingMeasurement& best, oit::GridCase& result) {
+    const oit::SettingMeasurement* both[] = {&chosen, &best};
     const std::vector<oit::FrameTimes> times = search.time_again(both);
     result.chosen.times = times[0];
     result.best->times = times[1];
     if (&chosen != &best) result.cost = times[0].median_ms / times[1].median_ms;
 }
 
-oit::GridCase run_case(const cellist::Device& device, const oit::Frame& frame, oit::Search& search,
-                       const oit::GridView& view, const std::string& budget_text) {
+oit::GridCase run_case(const cellist::Device& device, const oit::Frame& frame,
+                       oit::ExhaustiveSearch& search, const oit::GridView& view,
+                       const std::string& budget_text) {
     oit::GridCase result{.name = view.name + " " + budget_text,
                          .budget = oit::parse_budget(budget_text)};
     // As cellist-oit does.
-    const oit::Keeper keeper(device, frame, result.budget);
-    result.choice = keeper.choice();
+    const oit::BudgetController controller(device, frame, result.budget);
+    result.choice = controller.choice();
     result.chosen = {.setting = result.choice.setting,
-                     .errors = search.truth().errors_of(keeper.renderer().image())};
-    const oit::Trial* best = search.best(result.budget);
+                     .errors = search.truth().errors_of(controller.renderer().image())};
+    const oit::SettingMeasurement* best = search.best(result.budget);
     if (best) result.best = *best;
-    const oit::Trial* chosen = search.find(result.choice.setting);
+    const oit::SettingMeasurement* chosen = search.find(result.choice.setting);
     if (best && chosen)
         time_both(search, *chosen, *best, result);
     else if (best)
@@ -57,12 +58,12 @@ oit::GridResult run_view(const cellist::Device& device, const oit::GridView& vie
     oit::Scene scene = oit::make_scene(drawn);
     oit::stand_on_floor(scene, drawn);
     const oit::Frame frame = oit::make_frame(scene, drawn);
-    oit::Search search(device, frame, options.frames);
+    oit::ExhaustiveSearch search(device, frame, options.frames);
     oit::GridResult result{.view = &view,
                            .fragments = search.truth().reference().fragments.size(),
                            .most_layers = search.truth().reference().most_layers(),
                            .pixels_ambiguous = search.truth().pixels_ambiguous(),
-                           .trials = search.trials()};
+                           .measurements = search.measurements()};
     for (const std::string& budget : view.budgets) {
         result.cases.push_back(run_case(device, frame, search, view, budget));
         print(result.cases.back(), options.cost, std::cout);
@@ -113,7 +114,7 @@ bool run(const oit::GridOptions& options) {
 int main(int count, char** arguments) {
     return support::run_program("cellist-budget-grid", [&] {
         const oit::GridOptions options = oit::parse_grid_options(count, arguments);
-        if (!options.help) return run(options);
+        if (options.help_text.empty()) return run(options);
         std::cout << options.help_text;
         return true;
     });

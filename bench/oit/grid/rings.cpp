@@ -19,7 +19,7 @@ Scene make(float alpha) {
         const glm::dmat4 moved =
             glm::translate(glm::dmat4(1), 0.28 * (cell - glm::dvec3(0.5 * (side - 1))));
         scene.instances.push_back(
-            {.place = glm::rotate(moved, std::numbers::phi * i, glm::dvec3(1, 0.5, 0.25))});
+            {.to_world = glm::rotate(moved, std::numbers::phi * i, glm::dvec3(1, 0.5, 0.25))});
     }
     return scene;
 }

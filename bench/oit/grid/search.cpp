@@ -43,7 +43,7 @@ void add(PictureError& to, const ChannelErrors& errors, double channels) {
     for (const double error : errors) to.mean_square += error * error / channels;
 }
 
-FrameTimes figures_of(const std::vector<double>& times_ms) {
+FrameTimes metrics_of(const std::vector<double>& times_ms) {
     return {support::median(times_ms), std::ranges::min(times_ms), times_ms.size()};
 }
 
@@ -81,12 +81,13 @@ PictureErrors Truth::errors_of(std::span<const cl_float4> image) const {
         }
         const ChannelErrors off = difference(is, expected);
         add(errors.all, off, channels);
-        ChannelErrors told = off;
+        ChannelErrors resolved = off;
         if (const auto others = as_right_.find(p); others != as_right_.end())
             for (const Colour& other : others->second)
-                if (const ChannelErrors its = difference(is, other); largest(its) < largest(told))
-                    told = its;
-        add(errors.told, told, channels);
+                if (const ChannelErrors its = difference(is, other);
+                    largest(its) < largest(resolved))
+                    resolved = its;
+        add(errors.resolved, resolved, channels);
     }
     return errors;
 }
@@ -95,7 +96,7 @@ std::uint64_t Truth::pixels_ambiguous() const {
     return static_cast<std::uint64_t>(std::ranges::count(reference_.ambiguous, true));
 }
 
-struct Search::Drawn {
+struct ExhaustiveSearch::Drawn {
     Frame frame;
     Renderer renderer;
 
@@ -103,83 +104,93 @@ struct Search::Drawn {
         : frame(with_setting(of, setting)), renderer(device, frame, *setting.method) {}
 };
 
-Search::Search(const cellist::Device& device, const Frame& frame, std::uint32_t runs)
+ExhaustiveSearch::ExhaustiveSearch(const cellist::Device& device, const Frame& frame,
+                                   std::uint32_t runs)
     : frame_(frame), truth_(device, frame), runs_(runs) {
     // Rounding alone may give the device one layer more than the reference.
     for (const Setting& setting : settings_for(frame, truth_.reference().most_layers() + 1))
-        trials_.push_back({.setting = setting});
-    drawn_.resize(trials_.size());
+        measurements_.push_back({.setting = setting});
+    drawn_.resize(measurements_.size());
     support::Progress progress("settings");
-    for (std::size_t i = 0; i < trials_.size(); ++i) {
-        progress.update(static_cast<double>(i) / static_cast<double>(trials_.size()));
-        draw(device, frame, trials_[i]);
+    for (std::size_t i = 0; i < measurements_.size(); ++i) {
+        progress.update(static_cast<double>(i) / static_cast<double>(measurements_.size()));
+        draw(device, frame, measurements_[i]);
     }
     time_all();
 }
 
-Search::~Search() = default;
+ExhaustiveSearch::~ExhaustiveSearch() = default;
 
-void Search::draw(const cellist::Device& device, const Frame& frame, Trial& trial) {
+void ExhaustiveSearch::draw(const cellist::Device& device, const Frame& frame,
+                            SettingMeasurement& measurement) {
     try {
-        auto own = std::make_unique<Drawn>(device, frame, trial.setting);
+        auto own = std::make_unique<Drawn>(device, frame, measurement.setting);
         own->renderer.warm_up();
-        trial.times = figures_of({own->renderer.draw()});
-        trial.errors = truth_.errors_of(own->renderer.image());
-        drawn_[static_cast<std::size_t>(&trial - trials_.data())] = std::move(own);
+        measurement.times = metrics_of({own->renderer.draw()});
+        measurement.errors = truth_.errors_of(own->renderer.image());
+        drawn_[static_cast<std::size_t>(&measurement - measurements_.data())] = std::move(own);
     } catch (const std::exception& error) {
         const std::string message = error.what();
-        trial.failure = message.substr(0, message.find('\n'));
+        measurement.failure = message.substr(0, message.find('\n'));
     }
 }
 
-void Search::time_all() {
-    const Trial* exact = find(exact_setting(frame_.quality));
+void ExhaustiveSearch::time_all() {
+    const SettingMeasurement* exact = find(exact_setting(frame_.quality));
     if (!exact || !exact->failure.empty())
         throw std::runtime_error("all layers in float cannot be drawn: " +
                                  (exact ? exact->failure : std::string("no such setting")));
-    std::vector<const Trial*> near;
-    for (const Trial& trial : trials_)
-        if (trial.failure.empty() && trial.times.median_ms < far_slower * exact->times.median_ms)
-            near.push_back(&trial);
-    const std::vector<FrameTimes> times = draw_by_turns(near, runs_);
+    std::vector<const SettingMeasurement*> near;
+    for (const SettingMeasurement& measurement : measurements_)
+        if (measurement.failure.empty() &&
+            measurement.times.median_ms < far_slower * exact->times.median_ms)
+            near.push_back(&measurement);
+    const std::vector<FrameTimes> times = draw_interleaved(near, runs_);
     for (std::size_t i = 0; i < near.size(); ++i)
-        trials_[static_cast<std::size_t>(near[i] - trials_.data())].times = times[i];
+        measurements_[static_cast<std::size_t>(near[i] - measurements_.data())].times = times[i];
 }
 
-const Trial* Search::best(const Budget& budget) {
-    std::vector<const Trial*> within;
-    for (const Trial& trial : trials_)
-        if (trial.failure.empty() && budget.met_by(trial.errors.told)) within.push_back(&trial);
+const SettingMeasurement* ExhaustiveSearch::best(const Budget& budget) {
+    std::vector<const SettingMeasurement*> within;
+    for (const SettingMeasurement& measurement : measurements_)
+        if (measurement.failure.empty() && budget.met_by(measurement.errors.resolved))
+            within.push_back(&measurement);
     if (within.empty()) return nullptr;
-    const auto cost = [](const Trial* trial) { return trial->times.median_ms; };
+    const auto cost = [](const SettingMeasurement* measurement) {
+        return measurement->times.median_ms;
+    };
     const double cheapest = cost(std::ranges::min(within, {}, cost));
-    std::erase_if(within, [&](const Trial* trial) { return cost(trial) > nearly * cheapest; });
+    std::erase_if(within, [&](const SettingMeasurement* measurement) {
+        return cost(measurement) > nearly * cheapest;
+    });
     const std::vector<FrameTimes> times = time_again(within);
     const auto least = std::ranges::min_element(times, {}, &FrameTimes::median_ms);
     return within[static_cast<std::size_t>(least - times.begin())];
 }
 
-const Trial* Search::find(const Setting& setting) const {
-    const auto at = std::ranges::find(trials_, text(setting),
-                                      [](const Trial& trial) { return text(trial.setting); });
-    return at == trials_.end() ? nullptr : &*at;
+const SettingMeasurement* ExhaustiveSearch::find(const Setting& setting) const {
+    const auto at = std::ranges::find(
+        measurements_, text(setting),
+        [](const SettingMeasurement& measurement) { return text(measurement.setting); });
+    return at == measurements_.end() ? nullptr : &*at;
 }
 
-std::vector<FrameTimes> Search::time_again(std::span<const Trial* const> trials) {
-    return draw_by_turns(trials, 2 * runs_ + 1);
+std::vector<FrameTimes> ExhaustiveSearch::time_again(
+    std::span<const SettingMeasurement* const> measurements) {
+    return draw_interleaved(measurements, 2 * runs_ + 1);
 }
 
-std::vector<FrameTimes> Search::draw_by_turns(std::span<const Trial* const> trials,
-                                              std::uint32_t runs) {
-    std::vector<std::vector<double>> times(trials.size());
+std::vector<FrameTimes> ExhaustiveSearch::draw_interleaved(
+    std::span<const SettingMeasurement* const> measurements, std::uint32_t runs) {
+    std::vector<std::vector<double>> times(measurements.size());
     const support::Stopwatch stopwatch;
-    const double enough = enough_ms * static_cast<double>(trials.size());
+    const double enough = enough_ms * static_cast<double>(measurements.size());
     for (std::size_t turn = 0; turn < runs || (turn < most_runs && stopwatch.ms() < enough); ++turn)
-        for (std::size_t i = 0; i < trials.size(); ++i)
-            times[i].push_back(drawn(*trials[i]).renderer.draw());
-    std::vector<FrameTimes> figures;
-    for (const std::vector<double>& own : times) figures.push_back(figures_of(own));
-    return figures;
+        for (std::size_t i = 0; i < measurements.size(); ++i)
+            times[i].push_back(drawn(*measurements[i]).renderer.draw());
+    std::vector<FrameTimes> metrics;
+    for (const std::vector<double>& own : times) metrics.push_back(metrics_of(own));
+    return metrics;
 }
 
 }  // namespace oit

@@ -17,9 +17,9 @@ struct PictureError {
 
 /// A bound of the error of a picture against real arithmetic.
 struct PictureErrors {
-    PictureError told;  ///< without the larger error that undecided pixels may have
+    PictureError resolved;  ///< without the larger error that undecided pixels may have
     PictureError all;
-    /// Pixels whose order of layers float depths do not tell, where the other order could be over
+    /// Pixels whose order of layers float depths do not resolve, where the other order could be over
     /// the limit that the picture was compared for.
     std::uint64_t undecided_pixels = 0;
 };
@@ -30,19 +30,19 @@ struct PictureErrors {
 ///     cellist-oit dragon.ply --budget 1/255     no channel off by more than 1/255; also 0.004
 ///
 /// The truth is the frame in real numbers: all layers, each with its own depth. Where two layers lie so
-/// close that float depths do not tell which is in front, the pixel is undecided, and neither order is
+/// close that float depths do not resolve which is in front, the pixel is undecided, and neither order is
 /// wrong (see Survey), unless the budget is strict.
 ///
 /// 1. Survey draws the frame once with all layers in float, and finds for each pixel how far that can
 ///    be from the truth, and what of it packing, fewer layers or an early end would change.
-/// 2. Chooser goes through settings_for(frame). A setting whose error is known from the survey to be
+/// 2. BudgetSearch goes through settings_for(frame). A setting whose error is known from the survey to be
 ///    too large is not drawn. The others are, cheapest first, against each other: those that a few
 ///    draws show to be slower go, and of the rest those go that are over budget. Where times do not
 ///    tell which of the rest is fastest, the plainest of them is chosen. The error of a setting is
 ///    the bound that its method has for it (MethodInfo::bound) or, where that is too wide or there is
 ///    none, its difference from the survey's picture plus that picture's own bound. So what is
 ///    promised holds against the truth, and no reference on the CPU is needed.
-/// 3. Keeper draws frames with the setting that was chosen, and surveys again when time or camera
+/// 3. BudgetController draws frames with the setting that was chosen, and surveys again when time or camera
 ///    change. A frame over budget is drawn again with another setting.
 struct Budget {
     enum class Kind { largest, psnr };
@@ -55,7 +55,7 @@ struct Budget {
     [[nodiscard]] bool met_by(const PictureErrors& errors) const { return met_by(counted(errors)); }
     /// The one of the errors that counts for this budget.
     [[nodiscard]] const PictureError& counted(const PictureErrors& errors) const {
-        return strict ? errors.all : errors.told;
+        return strict ? errors.all : errors.resolved;
     }
     /// The error of a channel above which an undecided pixel is counted.
     [[nodiscard]] double pixel_limit() const { return kind == Kind::largest ? limit : 0; }

@@ -15,7 +15,7 @@ namespace oit {
 /// What a setting costs and gives on a device.
 struct Measurement {
     Setting setting;
-    std::string failure = {};        ///< why it could not be drawn; then there are no figures
+    std::string failure = {};        ///< why it could not be drawn; then there are no metrics
     std::vector<double> times = {};  ///< of frames, in milliseconds; see Renderer::draw
     double milliseconds = 0;         ///< of a frame, median
     double fastest = 0;              ///< the least

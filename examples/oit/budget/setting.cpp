@@ -65,7 +65,7 @@ std::vector<Setting> settings_for(const Frame& frame, std::uint64_t most_layers)
         quality.*member = value;
         const Setting setting{&method, quality};
         const Frame drawn = with_setting(frame, setting);
-        if (method.refusal(drawn, needs_of(drawn)).empty()) settings.push_back(setting);
+        if (method.refusal(drawn, features_of(drawn)).empty()) settings.push_back(setting);
     };
     for (const MethodInfo& method : methods()) {
         if (method.exact)

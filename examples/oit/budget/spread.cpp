@@ -22,7 +22,7 @@ Spread spread_of(std::vector<double> times_ms) {
             quantile(times_ms, 0.75)};
 }
 
-bool told_slower(const Spread& a, const Spread& b) {
+bool measurably_slower(const Spread& a, const Spread& b) {
     return a.median_ms > equally_fast * b.median_ms && a.lower_quartile_ms > b.upper_quartile_ms;
 }
 
@@ -31,7 +31,8 @@ std::size_t plainest_of_fastest(std::span<const Timed> settings) {
         settings, {}, [](const Timed& timed) { return timed.times.median_ms; });
     auto plainest = fastest;
     for (auto at = settings.begin(); at != settings.end(); ++at)
-        if (!told_slower(at->times, fastest->times) && plainer(at->setting, plainest->setting))
+        if (!measurably_slower(at->times, fastest->times) &&
+            plainer(at->setting, plainest->setting))
             plainest = at;
     return static_cast<std::size_t>(plainest - settings.begin());
 }

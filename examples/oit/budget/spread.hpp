@@ -22,9 +22,9 @@ struct Spread {
 /// Medians that differ by no more than this factor count as equal.
 inline constexpr double equally_fast = 1.03;
 
-/// True where times that were taken by turns tell that `a` is slower than `b`: its median is greater by
+/// True where interleaved times show that `a` is slower than `b`: its median is greater by
 /// more than `equally_fast`, and the quartiles of the two do not overlap.
-[[nodiscard]] bool told_slower(const Spread& a, const Spread& b);
+[[nodiscard]] bool measurably_slower(const Spread& a, const Spread& b);
 
 /// A setting, and the times of its frames.
 struct Timed {
@@ -32,7 +32,7 @@ struct Timed {
     Spread times;
 };
 
-/// The index of the plainest of the settings that are not told slower than the one with the least
+/// The index of the plainest of the settings that are not measurably slower than the one with the least
 /// median; see plainer().
 [[nodiscard]] std::size_t plainest_of_fastest(std::span<const Timed> settings);
 

@@ -4,7 +4,7 @@
 // them that float does not tell. Writes the image, and for each pixel
 //   uncertainty  xyz: how far the sRGB-encoded image is from the truth at most, where depths tell the
 //                order of all layers; w: by how much more where they do not
-// figures: see figures.clh. Claims are the errors, at most, of
+// metrics: see metrics.clh. The bounds are the largest errors of
 //   0        the image, apart from what depends on an order that float depths do not tell
 //   1        the image
 //   2 ...    OIT_FORMATS: of all layers in each packed format, as 0; infinite where none is known
@@ -21,19 +21,19 @@
 #define OIT_FIRST_LAYERS (OIT_FIRST_FORMAT + OIT_FORMATS)
 #define OIT_FIRST_EPSILON (OIT_FIRST_LAYERS + OIT_LAYER_COUNT)
 #define OIT_CUTS (OIT_LAYER_COUNT + OIT_EPSILON_COUNT)
-#define OIT_CLAIMS (OIT_FIRST_LAYERS + OIT_CUTS)
-// Behind the claims, as maxima and as sums.
-#define OIT_LIGHT_BEHIND OIT_CLAIMS
+#define OIT_BOUNDS (OIT_FIRST_LAYERS + OIT_CUTS)
+// After the bounds, as maxima and as sums.
+#define OIT_LIGHT_BEHIND OIT_BOUNDS
 #define OIT_OPACITY (OIT_LIGHT_BEHIND + OIT_LAYER_COUNT)
 #define OIT_LONGEST (OIT_OPACITY + 2)
-#define OIT_UNTOLD OIT_CLAIMS
-#define OIT_FRAGMENTS (OIT_UNTOLD + OIT_DEPTHS_OF_NODES)
+#define OIT_UNRESOLVED OIT_BOUNDS
+#define OIT_FRAGMENTS (OIT_UNRESOLVED + OIT_DEPTHS_OF_NODES)
 #define OIT_FIRST_BIN (OIT_FRAGMENTS + 1)
 
 constant uint oit_layer_counts[] = {OIT_LAYER_COUNTS};
 constant float oit_epsilons[] = {OIT_EPSILONS};
 
-// ---- layers whose depths are closer than can be told apart ----------------------------------------
+// ---- layers whose depths are closer than depths resolve -------------------------------------------
 
 // So many layers in front of one are looked at one by one.
 #define OIT_WINDOW 4
@@ -99,7 +99,7 @@ static inline float oit_gap(const OitFragment* front, const OitFragment* back, i
 #endif
 
 // Adds how much the image changes at most if two layers change places, in the samples in which they
-// are closer than can be told apart. brightest: of the light behind. distance: through what is behind.
+// are closer than depths resolve. brightest: of the light behind. distance: through what is behind.
 static inline void oit_exchange(OitOrder* order, const OitPixel* pixel, const OitBlended* front,
                                 const OitFragment* fragment, float brightest, float distance,
                                 const float* close) {
@@ -138,16 +138,17 @@ static inline void oit_next_layer(OitOrder* order, const OitPixel* pixel,
         if (oit_least_depth(fragment) - order->lost_depth <= close[kind])
             order->effect[kind] += order->lost_reaches * brightest;
 
-    OitBlended* place = &order->layers[order->count % OIT_WINDOW];
-    if (order->count >= OIT_WINDOW && oit_greatest_depth(&place->fragment) >= order->lost_depth) {
-        order->lost_depth = oit_greatest_depth(&place->fragment);
+    OitBlended* location = &order->layers[order->count % OIT_WINDOW];
+    if (order->count >= OIT_WINDOW &&
+        oit_greatest_depth(&location->fragment) >= order->lost_depth) {
+        order->lost_depth = oit_greatest_depth(&location->fragment);
         order->lost_reaches = 0.0f;
         for (int i = 0; i < OIT_LIGHTS; ++i)
             order->lost_reaches =
-                fmax(order->lost_reaches, oit_most(place->before.of[i].transmittance));
+                fmax(order->lost_reaches, oit_most(location->before.of[i].transmittance));
     }
-    place->before = *before;
-    place->fragment = *fragment;
+    location->before = *before;
+    location->fragment = *fragment;
     ++order->count;
 }
 
@@ -247,9 +248,9 @@ static inline float oit_passes(const OitLights* lights) {
 }
 
 kernel void oit_survey(CELLIST_LISTS(OIT_NODE, fragments), const OitResolution resolution,
-                       global float4* uncertainty, global float* figures, OIT_SCREEN) {
-    local float shared[OIT_GROUP * OIT_FIGURES];
-    OitFigures own = oit_no_figures();
+                       global float4* uncertainty, global float* metrics, OIT_SCREEN) {
+    local float shared[OIT_GROUP * OIT_METRICS];
+    OitMetrics own = oit_no_metrics();
     OitPixel pixel;
     if (oit_pixel(OIT_SCREEN_PASS, &pixel)) {
         const uint cell = cellist_cell3(fragments, pixel.x, pixel.y, pixel.eye);
@@ -334,28 +335,28 @@ kernel void oit_survey(CELLIST_LISTS(OIT_NODE, fragments), const OitResolution r
         image[pixel.pixel] = (float4)(seen, 1.0f);
         uncertainty[pixel.pixel] = uncertain;
 
-        oit_claim(&own, 0, certain);
-        oit_claim(&own, 1, certain + uncertain.w);
+        oit_add_bound(&own, 0, certain);
+        oit_add_bound(&own, 1, certain + uncertain.w);
         for (int i = 0; i < OIT_FORMATS; ++i) {
             // 24 and 16 bits of depth tell less than float.
             const float further = order.effect[max(i - 1, 0)] - order.effect[0];
             const float3 error = OIT_HAS_PACKING_BOUND
                                      ? packing.colour[i] + packing.alpha[i] + further + off
                                      : (float3)(INFINITY);
-            oit_claim(&own, OIT_FIRST_FORMAT + i,
-                      oit_encoded_error3(seen, error) + OIT_ENCODING_ERROR);
+            oit_add_bound(&own, OIT_FIRST_FORMAT + i,
+                          oit_encoded_error3(seen, error) + OIT_ENCODING_ERROR);
         }
         for (int i = 0; i < OIT_CUTS; ++i) {
             const float3 error = is_cut >> i & 1 ? fabs(oit_srgb3(cut[i]) - encoded) : 0.0f;
-            oit_claim(&own, OIT_FIRST_LAYERS + i, error + certain);
+            oit_add_bound(&own, OIT_FIRST_LAYERS + i, error + certain);
         }
         for (int i = 0; i < OIT_LAYER_COUNT; ++i) own.most[OIT_LIGHT_BEHIND + i] = behind[i];
         own.most[OIT_LONGEST] = (float)layers;
-        own.sum[OIT_UNTOLD] = float_order > 0.0f;
+        own.sum[OIT_UNRESOLVED] = float_order > 0.0f;
         for (int kind = 1; kind < OIT_DEPTHS_OF_NODES; ++kind)
-            own.sum[OIT_UNTOLD + kind] = order.effect[kind] + hidden > 0.0f;
+            own.sum[OIT_UNRESOLVED + kind] = order.effect[kind] + hidden > 0.0f;
         own.sum[OIT_FRAGMENTS] = (float)layers;
         own.sum[OIT_FIRST_BIN + min(32 - (int)clz(layers), OIT_BINS - 1)] = 1.0f;
     }
-    oit_write_figures(shared, figures, &own);
+    oit_write_metrics(shared, metrics, &own);
 }

@@ -7,7 +7,7 @@
 
 namespace oit {
 
-/// How much depths differ at least if they are told apart: constant + depth * (linear + depth *
+/// How much depths differ at least if they are resolved: constant + depth * (linear + depth *
 /// quadratic), for float, 24 and 16 bits.
 struct OitResolution {
     cl_float constant_part[3];
@@ -39,12 +39,12 @@ Frame exact_frame(const Frame& frame) {
     return exact;
 }
 
-OitResolution resolution_of(const Frame& frame, const Needs& needs) {
+OitResolution resolution_of(const Frame& frame, const FrameFeatures& features) {
     OitResolution resolution{};
     for (std::size_t i = 0; i < depths_of_nodes.size(); ++i) {
         Quality quality = frame.quality;
         quality.format = depths_of_nodes.at(i);
-        const DepthResolution parts = node_layout(quality, needs).depth_resolution(needs);
+        const DepthResolution parts = node_layout(quality, features).depth_resolution(features);
         resolution.constant_part[i] = static_cast<cl_float>(parts.constant);
         resolution.linear_part[i] = static_cast<cl_float>(parts.linear);
         resolution.quadratic_part[i] = static_cast<cl_float>(parts.quadratic);
@@ -69,11 +69,11 @@ std::string define(const std::string& name, const std::string& value) {
 }
 
 // The maxima and sums of all pixels.
-struct Figures {
+struct Metrics {
     std::vector<double> most;
     std::vector<double> sum;
 
-    Figures(const std::vector<cl_float>& groups, std::size_t maxima, std::size_t sums)
+    Metrics(const std::vector<cl_float>& groups, std::size_t maxima, std::size_t sums)
         : most(maxima, -INFINITY), sum(sums, 0.0) {
         const std::size_t width = maxima + sums;
         for (std::size_t at = 0; at < groups.size(); ++at) {
@@ -87,7 +87,7 @@ struct Figures {
     }
 
     // Sums of squares were rounded within their group.
-    [[nodiscard]] PictureError claim(std::size_t i, std::uint64_t pixels) const {
+    [[nodiscard]] PictureError bound(std::size_t i, std::uint64_t pixels) const {
         constexpr double rounded = 1 + 1e-5;
         return {most[i], sum[i] * rounded / (3 * static_cast<double>(pixels))};
     }
@@ -114,13 +114,13 @@ public:
           compare_(source_.screen_kernel(text(kernels::survey_compare_cl, 2, 3),
                                          "survey_compare.cl", "oit_compare")),
           uncertainty_(device, frame_.pixels()),
-          figures_(device, groups_of(frame_) * (maxima() + sums())),
+          metrics_(device, groups_of(frame_) * (maxima() + sums())),
           compared_(device, groups_of(frame_) * 5) {}
     Drawing(const Drawing&) = delete;
     Drawing& operator=(const Drawing&) = delete;
     virtual ~Drawing() = default;
 
-    SceneMeasure measure(const Frame& frame) {
+    SurveyResult measure(const Frame& frame) {
         frame_.time = frame.time;
         frame_.views = frame.views;
         source_.follow();
@@ -128,15 +128,15 @@ public:
         do source_.prepare();
         while (!source_.complete());
         run();
-        return read(Figures(figures_.download(), maxima(), sums()));
+        return read(Metrics(metrics_.download(), maxima(), sums()));
     }
 
     PictureErrors compare(const cellist::Buffer<cl_float4>& picture, double limit) {
         source_.run_on_screen(compare_, picture, uncertainty_, static_cast<cl_float>(limit),
                               compared_);
-        const Figures figures(compared_.download(), 2, 3);
-        return {figures.claim(0, frame_.pixels()), figures.claim(1, frame_.pixels()),
-                figures.count(2)};
+        const Metrics metrics(compared_.download(), 2, 3);
+        return {metrics.bound(0, frame_.pixels()), metrics.bound(1, frame_.pixels()),
+                metrics.count(2)};
     }
 
 protected:
@@ -144,9 +144,9 @@ protected:
 
     [[nodiscard]] FragmentSource& source() { return source_; }
     [[nodiscard]] const cellist::Buffer<cl_float4>& uncertainty() const { return uncertainty_; }
-    [[nodiscard]] const cellist::Buffer<cl_float>& figures() const { return figures_; }
+    [[nodiscard]] const cellist::Buffer<cl_float>& metrics() const { return metrics_; }
     [[nodiscard]] OitResolution resolution() const {
-        return resolution_of(frame_, source_.needs());
+        return resolution_of(frame_, source_.features());
     }
     [[nodiscard]] std::string survey_text() const {
         return define("OIT_BINS", std::to_string(bins)) +
@@ -165,39 +165,40 @@ private:
                                           std::size_t sums) {
         return define("OIT_MAXIMA", std::to_string(maxima)) +
                define("OIT_SUMS", std::to_string(sums)) + std::string(errors) +
-               std::string(kernels::figures_clh) + std::string(source);
+               std::string(kernels::metrics_clh) + std::string(source);
     }
-    [[nodiscard]] std::size_t claims() const {
+    [[nodiscard]] std::size_t bounds() const {
         return 2 + packed_formats + layers_.size() + epsilons_.size();
     }
-    [[nodiscard]] std::size_t maxima() const { return claims() + layers_.size() + 3; }
-    [[nodiscard]] std::size_t sums() const { return claims() + depths_of_nodes.size() + 1 + bins; }
+    [[nodiscard]] std::size_t maxima() const { return bounds() + layers_.size() + 3; }
+    [[nodiscard]] std::size_t sums() const { return bounds() + depths_of_nodes.size() + 1 + bins; }
 
-    [[nodiscard]] SceneMeasure read(const Figures& figures) const {
-        SceneMeasure measure;
+    [[nodiscard]] SurveyResult read(const Metrics& metrics) const {
+        SurveyResult measure;
         measure.pixels = frame_.pixels();
-        const auto claim = [&](std::size_t i) { return figures.claim(i, frame_.pixels()); };
+        const auto bound = [&](std::size_t i) { return metrics.bound(i, frame_.pixels()); };
         std::size_t at = 0;
-        measure.exact = claim(at++);
-        measure.exact_with_order = claim(at++);
+        measure.exact = bound(at++);
+        measure.exact_with_order = bound(at++);
         measure.formats.fill(measure.exact);
         for (const NodeFormat format : packed)
-            measure.formats.at(static_cast<std::size_t>(format)) = claim(at++);
+            measure.formats.at(static_cast<std::size_t>(format)) = bound(at++);
         for (const std::uint32_t layers : layers_)
-            measure.cuts.push_back({.layers = layers, .error = claim(at++)});
+            measure.cuts.push_back({.layers = layers, .error = bound(at++)});
         for (const float epsilon : epsilons_)
-            measure.cuts.push_back({.epsilon = epsilon, .error = claim(at++)});
+            measure.cuts.push_back({.epsilon = epsilon, .error = bound(at++)});
 
         std::size_t maximum = at, sum = at;
         for (std::size_t i = 0; i < layers_.size(); ++i)
-            measure.cuts[i].light_behind = std::max(0.0, figures.most[maximum++]);
-        measure.greatest_alpha = static_cast<float>(std::max(0.0, figures.most[maximum++]));
-        measure.least_alpha = static_cast<float>(std::min(1.0, -figures.most[maximum++]));
-        measure.longest = static_cast<std::uint64_t>(std::max(0.0, figures.most[maximum]));
-        for (std::uint64_t& untold : measure.pixels_untold) untold = figures.count(sum++);
-        measure.fragments = figures.count(sum++);
+            measure.cuts[i].light_behind = std::max(0.0, metrics.most[maximum++]);
+        measure.greatest_alpha = static_cast<float>(std::max(0.0, metrics.most[maximum++]));
+        measure.least_alpha = static_cast<float>(std::min(1.0, -metrics.most[maximum++]));
+        measure.longest = static_cast<std::uint64_t>(std::max(0.0, metrics.most[maximum]));
+        for (std::uint64_t& unresolved : measure.pixels_unresolved)
+            unresolved = metrics.count(sum++);
+        measure.fragments = metrics.count(sum++);
         for (std::size_t bin = 0; bin < bins; ++bin)
-            measure.pixels_by_layers.push_back(figures.count(sum++));
+            measure.pixels_by_layers.push_back(metrics.count(sum++));
         measure.nonempty_pixels = measure.pixels - measure.pixels_by_layers.front();
         return measure;
     }
@@ -208,13 +209,13 @@ private:
     FragmentSource source_;
     cellist::Kernel compare_;
     cellist::Buffer<cl_float4> uncertainty_;
-    cellist::Buffer<cl_float> figures_;
+    cellist::Buffer<cl_float> metrics_;
     cellist::Buffer<cl_float> compared_;
 };
 
 namespace {
 
-// Fragments so little behind an opaque surface that float does not tell are kept, too.
+// Fragments so little behind an opaque surface that float does not resolve are kept, too.
 const std::string& list_pass_text() {
     static const std::string text =
         "#define OIT_DEPTH_MARGIN (1.0f + 0x1p-20f)\n" + std::string(kernels::lists_cl);
@@ -241,7 +242,7 @@ Survey::Survey(const cellist::Device& device, const Frame& frame, std::vector<st
             void run() override {
                 fragments_.build([&] { source().draw(pass_, fragments_); });
                 fragments_.sort(&Node::key);
-                source().run_on_screen(survey_, fragments_, resolution(), uncertainty(), figures());
+                source().run_on_screen(survey_, fragments_, resolution(), uncertainty(), metrics());
             }
 
         private:
@@ -252,12 +253,12 @@ Survey::Survey(const cellist::Device& device, const Frame& frame, std::vector<st
         return std::make_unique<Lists>(device, frame, std::move(layers), std::move(epsilons));
     };
     const Frame exact = exact_frame(frame);
-    drawing_ = with_node_type(node_layout(exact.quality, needs_of(exact)).words, make);
+    drawing_ = with_node_type(node_layout(exact.quality, features_of(exact)).words, make);
 }
 
 Survey::~Survey() = default;
 
-SceneMeasure Survey::measure(const Frame& frame) { return drawing_->measure(frame); }
+SurveyResult Survey::measure(const Frame& frame) { return drawing_->measure(frame); }
 
 PictureErrors Survey::compare(const cellist::Buffer<cl_float4>& picture, double limit) {
     return drawing_->compare(picture, limit);

@@ -7,7 +7,7 @@
 #include <cellist/cellist.hpp>
 
 #include "budget/budget.hpp"
-#include "budget/scene_measure.hpp"
+#include "budget/survey_result.hpp"
 #include "frame/frame.hpp"
 
 namespace oit {
@@ -17,7 +17,7 @@ namespace oit {
 ///
 /// Where two layers of a pixel differ in depth by less than float resolves (2^-20 of it), the device may
 /// have them in an order that is not that of the numbers it was given. What their exchange changes is
-/// found by blending both orders, and counted apart: PictureErrors::told holds with the order that the
+/// found by blending both orders, and counted apart: PictureErrors::resolved holds with the order that the
 /// device has, and PictureErrors::all with any.
 class Survey {
 public:
@@ -30,7 +30,7 @@ public:
     ~Survey();
 
     /// Draws the frame, which differs from the first in time and views at most. Blocks.
-    [[nodiscard]] SceneMeasure measure(const Frame& frame);
+    [[nodiscard]] SurveyResult measure(const Frame& frame);
 
     /// Compares another picture of the frame that was measured last, and counts the undecided
     /// pixels in which a channel may be off by more than `limit`. Blocks.

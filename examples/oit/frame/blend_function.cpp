@@ -38,7 +38,8 @@ std::string blend_function_text(const std::optional<BlendFunction>& function) {
 
 void check_blend_function(const cellist::Device& device, const std::string& defines,
                           const BlendFunction& function) {
-    const cellist::Source source{.text = defines + std::string(kernels::fragment_clh) +
+    const cellist::Source source{.text = "#define OIT_NO_NODES\n" + defines +
+                                         std::string(kernels::fragment_clh) +
                                          blend_function_text(function) + std::string(caller),
                                  .file_name = function.file_name};
     try {

@@ -26,7 +26,7 @@ std::vector<raster::Placed> placed_at(const Scene& scene, double time) {
     std::vector<raster::Placed> placed;
     for (const Instance& instance : scene.instances)
         placed.push_back({.mesh = instance.model,
-                          .to_world = place_at(instance, time),
+                          .to_world = transform_at(instance, time),
                           .tag = static_cast<cl_uint>(instance.material)});
     return placed;
 }
@@ -58,12 +58,12 @@ std::vector<cl_float> tints_of(const Scene& scene) {
     return tints;
 }
 
-OitFrame constants_of(const Frame& frame, const Needs& needs) {
-    return {.look = frame.scene.look,
-            .alpha = needs.alpha,
-            .least_depth = needs.least_depth,
-            .greatest_depth = needs.greatest_depth,
-            .colour_max = needs.colour_max,
+OitFrame constants_of(const Frame& frame, const FrameFeatures& features) {
+    return {.lighting = frame.scene.lighting,
+            .alpha = features.alpha,
+            .least_depth = features.least_depth,
+            .greatest_depth = features.greatest_depth,
+            .colour_max = features.colour_max,
             .epsilon = frame.quality.epsilon,
             .first_pixel = 0,
             .end_pixel = static_cast<cl_uint>(frame.pixels())};
@@ -95,13 +95,12 @@ FragmentSource::Opaque::Passes::Passes(const FragmentSource& source)
     : triangles(source.device_, source.projection_, chosen(source.frame_.scene, true)),
       depth(source.device_, sampling_of(source.frame_.quality),
             joined({source.defines_, kernels::shading_clh, kernels::opaque_depth_cl}),
-            "opaque_depth.cl", cellist::type<OitFrame>),
+            "opaque_depth.cl", cellist::type<OitFrame>, cellist::type<Material>),
       owner(source.device_, sampling_of(source.frame_.quality),
             joined({source.defines_, kernels::shading_clh, kernels::opaque_owner_cl}),
-            "opaque_owner.cl", cellist::type<OitFrame>),
+            "opaque_owner.cl", cellist::type<OitFrame>, cellist::type<Material>),
       colour(source.device_, sampling_of(source.frame_.quality),
-             joined({source.defines_, kernels::shading_clh, kernels::corners_clh,
-                     kernels::opaque_colour_cl}),
+             joined({source.defines_, kernels::shading_clh, kernels::opaque_colour_cl}),
              "opaque_colour.cl", cellist::type<OitFrame>, cellist::type<Material>),
       owners(source.device_, source.samples()) {}
 
@@ -114,10 +113,10 @@ FragmentSource::Opaque::Opaque(const FragmentSource& source)
 FragmentSource::FragmentSource(const cellist::Device& device, const Frame& frame)
     : device_(device),
       frame_(frame),
-      needs_(needs_of(frame)),
-      layout_(node_layout(frame.quality, needs_)),
-      constants_(constants_of(frame, needs_)),
-      defines_(defines_of(frame, needs_) + defines_of(layout_)),
+      features_(features_of(frame)),
+      layout_(node_layout(frame.quality, features_)),
+      constants_(constants_of(frame, features_)),
+      defines_(defines_of(frame, features_) + defines_of(layout_)),
       setup_(device, sampling_of(frame.quality)),
       geometry_(device, meshes_of(frame.scene)),
       projection_(device, setup_, geometry_, placed_at(frame.scene, frame.time), frame.views),
@@ -125,9 +124,9 @@ FragmentSource::FragmentSource(const cellist::Device& device, const Frame& frame
       materials_(device, frame.scene.materials),
       screen_(screen_of(frame, resolves_samples(frame.quality) ? samples_of(frame.quality) : 1)),
       image_(device, (is_reduced(frame) ? 2 : 1) * frame.pixels()) {
-    if (needs_.opacities) opacities_.emplace(device, opacities_of(frame.scene));
-    if (needs_.tints) tints_.emplace(device, tints_of(frame.scene));
-    if (needs_.opaque) opaque_ = std::make_unique<Opaque>(*this);
+    if (features_.opacities) opacities_.emplace(device, opacities_of(frame.scene));
+    if (features_.tints) tints_.emplace(device, tints_of(frame.scene));
+    if (features_.opaque) opaque_ = std::make_unique<Opaque>(*this);
     if (resolves_samples(frame.quality)) {
         sample_image_.emplace(device, frame.pixels() * samples_of(frame.quality));
         average_.emplace(device,
@@ -139,10 +138,10 @@ FragmentSource::FragmentSource(const cellist::Device& device, const Frame& frame
 }
 
 void FragmentSource::follow() {
-    const Needs now = needs_of(frame_);
-    needs_.least_depth = now.least_depth;
-    needs_.greatest_depth = now.greatest_depth;
-    constants_ = constants_of(frame_, needs_);
+    const FrameFeatures now = features_of(frame_);
+    features_.least_depth = now.least_depth;
+    features_.greatest_depth = now.greatest_depth;
+    constants_ = constants_of(frame_, features_);
     projection_.move(placed_at(frame_.scene, frame_.time), frame_.views);
 }
 
@@ -188,18 +187,18 @@ cellist::Shape FragmentSource::shape() const {
 raster::Sampling FragmentSource::sampling() const { return sampling_of(frame_.quality); }
 
 std::string FragmentSource::pass_text(std::string_view source) const {
-    return joined({defines_, "#define OIT_PASS", kernels::shading_clh, kernels::corners_clh,
-                   kernels::fragment_clh, kernels::node_clh, source, kernels::surface_clh});
+    return joined({defines_, "#define OIT_PASS", kernels::shading_clh, kernels::fragment_clh,
+                   source, kernels::surface_clh});
 }
 
 cellist::Source FragmentSource::screen_source(std::string_view source,
                                               const std::string& file_name) const {
-    return {.text = joined({"#include <cellist/lists.clh>\n#pragma OPENCL FP_CONTRACT OFF",
-                            defines_, kernels::shading_clh, kernels::fragment_clh,
-                            kernels::node_clh, blend_function_text(frame_.blend_function),
-                            kernels::blend_clh, kernels::screen_clh, source}),
-            .file_name = file_name,
-            .options = raster::build_options(device_)};
+    return {
+        .text = joined({"#include <cellist/lists.clh>\n#pragma OPENCL FP_CONTRACT OFF", defines_,
+                        kernels::shading_clh, kernels::fragment_clh,
+                        blend_function_text(frame_.blend_function), kernels::blend_clh, source}),
+        .file_name = file_name,
+        .options = raster::build_options(device_)};
 }
 
 std::uint64_t FragmentSource::device_bytes() const {

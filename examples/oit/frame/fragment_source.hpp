@@ -12,7 +12,7 @@
 #include <cellist/cellist.hpp>
 
 #include "frame/frame.hpp"
-#include "frame/needs.hpp"
+#include "frame/frame_features.hpp"
 #include "frame/node_layout.hpp"
 #include "frame/oit_frame.hpp"
 #include "raster/rasteriser.hpp"
@@ -74,7 +74,7 @@ public:
         });
     }
 
-    /// A kernel over the pixels: its last parameters are OIT_SCREEN (see screen.clh).
+    /// A kernel over the pixels: its last parameters are OIT_SCREEN (see blend.clh).
     template <class... Uses>
     [[nodiscard]] cellist::Kernel screen_kernel(std::string_view source,
                                                 const std::string& file_name,
@@ -103,11 +103,11 @@ public:
 
     [[nodiscard]] const cellist::Device& device() const { return device_; }
     [[nodiscard]] const Frame& frame() const { return frame_; }
-    [[nodiscard]] const Needs& needs() const { return needs_; }
+    [[nodiscard]] const FrameFeatures& features() const { return features_; }
     [[nodiscard]] const NodeLayout& layout() const { return layout_; }
-    /// Floats for what is blended of a pixel: see screen.clh.
+    /// Floats for what is blended of a pixel: see blend.clh.
     [[nodiscard]] std::uint32_t state_floats() const {
-        return oit::state_floats(frame_.quality, needs_);
+        return oit::state_floats(frame_.quality, features_);
     }
     /// Of all pixels of all eyes.
     [[nodiscard]] std::size_t samples() const {
@@ -162,7 +162,7 @@ private:
 
     const cellist::Device& device_;
     const Frame& frame_;
-    Needs needs_;
+    FrameFeatures features_;
     NodeLayout layout_;
     OitFrame constants_;
     std::string defines_;

@@ -74,15 +74,15 @@ int half_exponent(float colour_max) {
 
 }  // namespace
 
-NodeLayout node_layout(const Quality& quality, const Needs& needs) {
+NodeLayout node_layout(const Quality& quality, const FrameFeatures& features) {
     Layouter layouter(base_of(quality.format));
     NodeLayout layout{.format = quality.format, .depth_scale = quality.depth_scale};
     if (quality.format == NodeFormat::rgba16f)
-        layout.half_exponent = half_exponent(needs.colour_max);
+        layout.half_exponent = half_exponent(features.colour_max);
     if (quality.samples > 1)
         layout.coverage = layouter.place(static_cast<std::uint32_t>(quality.samples));
-    if (needs.alpha_varies) layout.alpha = layouter.place(layouter.alpha_bits());
-    if (needs.blend_varies()) layout.blend = layouter.place(3);
+    if (features.alpha_varies) layout.alpha = layouter.place(layouter.alpha_bits());
+    if (features.blend_varies()) layout.blend = layouter.place(3);
     if (quality.depth_range) layout.depth_range = layouter.place(32);
     layout.words = layouter.words();
     return layout;
@@ -115,9 +115,9 @@ std::string defines_of(const NodeLayout& layout) {
     return text;
 }
 
-double NodeLayout::depth_of(std::uint32_t key, const Needs& needs) const {
-    const auto least = static_cast<double>(needs.least_depth);
-    const auto greatest = static_cast<double>(needs.greatest_depth);
+double NodeLayout::depth_of(std::uint32_t key, const FrameFeatures& features) const {
+    const auto least = static_cast<double>(features.least_depth);
+    const auto greatest = static_cast<double>(features.greatest_depth);
     const std::uint32_t bits = depth_bits(format);
     if (bits == 0) {
         if (depth_scale == DepthScale::reversed)
@@ -131,7 +131,7 @@ double NodeLayout::depth_of(std::uint32_t key, const Needs& needs) const {
     return least + part * (greatest - least);
 }
 
-DepthResolution NodeLayout::depth_resolution(const Needs& needs) const {
+DepthResolution NodeLayout::depth_resolution(const FrameFeatures& features) const {
     DepthResolution resolution{.linear = oit::depth_resolution};
     const std::uint32_t bits = depth_bits(format);
     if (bits == 0) {
@@ -139,8 +139,8 @@ DepthResolution NodeLayout::depth_resolution(const Needs& needs) const {
         if (depth_scale == DepthScale::reversed) resolution.linear *= 1.125;
         return resolution;
     }
-    const auto least = static_cast<double>(needs.least_depth);
-    const auto greatest = static_cast<double>(needs.greatest_depth);
+    const auto least = static_cast<double>(features.least_depth);
+    const auto greatest = static_cast<double>(features.greatest_depth);
     const double steps = static_cast<double>((1U << bits) - 1);
     // Steps are counted in float, from the least depth.
     const double step = (1 + steps * 0x1p-22) / steps;
@@ -151,8 +151,8 @@ DepthResolution NodeLayout::depth_resolution(const Needs& needs) const {
     return resolution;
 }
 
-double NodeLayout::colour_error(const Needs& needs) const {
-    const auto most = static_cast<double>(needs.colour_max);
+double NodeLayout::colour_error(const FrameFeatures& features) const {
+    const auto most = static_cast<double>(features.colour_max);
     // Half a step of the square root r, at r = 1: (r + h)^2 - r^2.
     const auto of_root = [&](double steps) { return most * (1 / steps + 0.25 / (steps * steps)); };
     switch (format) {

@@ -6,7 +6,7 @@
 
 #include <cellist/cellist.hpp>
 
-#include "frame/needs.hpp"
+#include "frame/frame_features.hpp"
 
 namespace oit {
 
@@ -30,8 +30,8 @@ OIT_DEFINE_NODE(6);
 OIT_DEFINE_NODE(7);
 #undef OIT_DEFINE_NODE
 
-/// Two depths are told apart by the device if they differ by more than this part of the greater
-/// one. The device's depth is off by a factor of at most 1 +- 8 * 2^-24 (see scan.clh); two of them
+/// The device resolves two depths if they differ by more than this part of the greater
+/// one. The device's depth is off by a factor of at most 1 +- 8 * 2^-24 (see triangle.clh); two of them
 /// by twice that.
 inline constexpr double depth_resolution = 16.0 / (1 << 24);
 
@@ -65,17 +65,17 @@ struct NodeLayout {
     NodeField depth_range = {};  ///< two halves: how much 1 / depth grows a pixel, along x and y
 
     /// The depth in a key. `needs` gives the range of quantised depths.
-    [[nodiscard]] double depth_of(std::uint32_t key, const Needs& needs) const;
-    [[nodiscard]] DepthResolution depth_resolution(const Needs& needs) const;
+    [[nodiscard]] double depth_of(std::uint32_t key, const FrameFeatures& features) const;
+    [[nodiscard]] DepthResolution depth_resolution(const FrameFeatures& features) const;
     /// How far a channel of a colour in a node is from the fragment's, at most.
-    [[nodiscard]] double colour_error(const Needs& needs) const;
+    [[nodiscard]] double colour_error(const FrameFeatures& features) const;
     /// The same for an opacity.
     [[nodiscard]] double alpha_error() const;
 };
 
-[[nodiscard]] NodeLayout node_layout(const Quality& quality, const Needs& needs);
+[[nodiscard]] NodeLayout node_layout(const Quality& quality, const FrameFeatures& features);
 
-/// The macros that node.clh is compiled with.
+/// The macros that fragment.clh is compiled with.
 [[nodiscard]] std::string defines_of(const NodeLayout& layout);
 
 /// Calls `use` with a null pointer to the node type of `words` words, and returns what it returns.

@@ -2,13 +2,13 @@
 
 #include <cellist/cellist.hpp>
 
-#include "scene/look.hpp"
+#include "scene/lighting.hpp"
 
 namespace oit {
 
 /// What is the same for all pixels of a frame, as kernels take it.
 struct OitFrame {
-    Look look;
+    Lighting lighting;
     cl_float alpha;        ///< of every fragment, where all have the same
     cl_float least_depth;  ///< of fragments: what quantised depths start at
     cl_float greatest_depth;
@@ -17,7 +17,7 @@ struct OitFrame {
     cl_uint first_pixel;  ///< of those that are blended at once, where memory is bounded
     cl_uint end_pixel;
 };
-CELLIST_STRUCT(OitFrame, look, alpha, least_depth, greatest_depth, colour_max, epsilon, first_pixel,
-               end_pixel);
+CELLIST_STRUCT(OitFrame, lighting, alpha, least_depth, greatest_depth, colour_max, epsilon,
+               first_pixel, end_pixel);
 
 }  // namespace oit

@@ -20,10 +20,10 @@ static inline void raster_emit(RASTER_TARGET, const View* view,
     const Material material = materials[instance->tag];
     float3 shaded;
     if (material.paint == OIT_FLOOR) {
-        shaded = oit_shade_floor(&frame.look, view, sample->x, sample->y);
+        shaded = oit_shade_floor(&frame.lighting, view, sample->x, sample->y);
     } else {
         const float3 normal = oit_normal(instance, sample, normals);
-        shaded = oit_shade_surface(&frame.look, oit_tint(&material, sample OIT_TINTS_PASS),
+        shaded = oit_shade_surface(&frame.lighting, oit_tint(&material, sample OIT_TINTS_PASS),
                                    material.gloss, normal, sample->front,
                                    oit_ray(view, sample->x, sample->y));
     }

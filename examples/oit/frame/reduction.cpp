@@ -48,7 +48,7 @@ Frame reduced_frame(const Frame& frame) {
 
 // The opaque surfaces alone.
 Scene opaque_part(const Scene& scene) {
-    Scene opaque{.materials = scene.materials, .look = scene.look};
+    Scene opaque{.materials = scene.materials, .lighting = scene.lighting};
     std::vector<std::size_t> places(scene.models.size(), scene.models.size());
     for (Instance instance : scene.instances) {
         if (!scene.is_opaque(instance)) continue;

@@ -9,8 +9,8 @@ std::string accumulating_text(std::string_view source) {
     return std::string(kernels::accumulate_clh).append("\n").append(source);
 }
 
-std::string accumulating_refusal(const Frame& frame, const Needs& needs) {
-    if (needs.blends != 0 && needs.blends != 1U << static_cast<std::uint32_t>(Blend::over))
+std::string accumulating_refusal(const Frame& frame, const FrameFeatures& features) {
+    if (features.blends != 0 && features.blends != 1U << static_cast<std::uint32_t>(Blend::over))
         return "it supports only surfaces that cover what is behind them";
     if (frame.quality.depth_range) return "it has no depth for each sample";
     if (frame.quality.layers) return "it blends all layers at once";
@@ -22,5 +22,11 @@ void require_wide_sums(const cellist::Device& device) {
         throw support::InputError("adding up fragments needs 64-bit atomic operations, which " +
                                   device.info().name + " does not have");
 }
+
+AccumulatingMethod::AccumulatingMethod(FragmentSource& source)
+    : source_(source),
+      sums_(source.device(), 5 * source.samples()),
+      resolve_(
+          source.screen_kernel(kernels::accumulate_clh, "accumulate.clh", "oit_resolve_sums")) {}
 
 }  // namespace oit

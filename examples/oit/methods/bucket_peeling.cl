@@ -7,7 +7,7 @@
 //   counts   fragments in each
 //   nodes    the layers that were taken
 //   state    what has been blended
-// The passes: with OIT_FIND_RANGE; then by turns with OIT_FIND_KEYS, and with neither, which takes
+// The passes: with OIT_FIND_RANGE; then alternately with OIT_FIND_KEYS and with neither, which takes
 // the layers.
 
 static inline uint oit_bucket(float depth, float least, float greatest) {
@@ -21,17 +21,17 @@ static inline uint oit_bucket(float depth, float least, float greatest) {
         volatile global uint *counts, global uint *nodes
 #define OIT_TARGET_PASS begin, range, buckets, counts, nodes
 
-static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitPlace* place,
+static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitLocation* location,
                              const OitFragment* fragment) {
-    const ulong key = oit_peeling_key(place, fragment);
+    const ulong key = oit_peeling_key(location, fragment);
 #ifdef OIT_FIND_RANGE
-    atomic_min(&range[2 * place->pixel], as_uint(fragment->depth));
-    atomic_max(&range[2 * place->pixel + 1], as_uint(fragment->depth));
+    atomic_min(&range[2 * location->pixel], as_uint(fragment->depth));
+    atomic_max(&range[2 * location->pixel + 1], as_uint(fragment->depth));
 #else
-    if (key < begin[place->pixel]) return;
-    const size_t bucket =
-        place->pixel * OIT_BUCKETS + oit_bucket(fragment->depth, as_float(range[2 * place->pixel]),
-                                                as_float(range[2 * place->pixel + 1]));
+    if (key < begin[location->pixel]) return;
+    const size_t bucket = location->pixel * OIT_BUCKETS +
+                          oit_bucket(fragment->depth, as_float(range[2 * location->pixel]),
+                                     as_float(range[2 * location->pixel + 1]));
 #ifdef OIT_FIND_KEYS
     atom_min(&buckets[bucket], key);
     atomic_inc(&counts[bucket]);
@@ -73,12 +73,5 @@ kernel void oit_peel_buckets(global ulong* begin, global uint* range, global ulo
     }
     begin[pixel.pixel] = then;
     oit_save(state, &pixel, &lights);
-}
-
-kernel void oit_finish_peeling(global const float* state, OIT_SCREEN) {
-    OitPixel pixel;
-    if (!oit_pixel(OIT_SCREEN_PASS, &pixel)) return;
-    OitLights lights = oit_load(state, &pixel);
-    oit_write(OIT_SCREEN_PASS, &pixel, &lights);
 }
 #endif

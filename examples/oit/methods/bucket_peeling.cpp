@@ -17,9 +17,9 @@ struct Range {
     cl_uint least, greatest;
 };
 
-std::string refusal(const Frame& frame, const Needs& needs) {
+std::string refusal(const Frame& frame, const FrameFeatures& features) {
     if (frame.quality.layers) return "it takes layers out of order and cannot count them";
-    return peeling_refusal(frame, needs);
+    return peeling_refusal(frame, features);
 }
 
 std::size_t buckets_of(const FragmentSource& source) {
@@ -92,7 +92,7 @@ private:
 };
 
 // The range of depth, then keys and layers at least once.
-std::uint64_t passes(const SceneMeasure&, const Quality&) { return 3; }
+std::uint64_t passes(const SurveyResult&, const Quality&) { return 3; }
 
 const MethodRegistration bucket_peeling(
     {.name = "bucket_peeling",

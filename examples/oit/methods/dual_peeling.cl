@@ -10,10 +10,10 @@
 #define OIT_TARGET global const ulong *current, volatile global ulong *next, global uint *nodes
 #define OIT_TARGET_PASS current, next, nodes
 
-static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitPlace* place,
+static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitLocation* location,
                              const OitFragment* fragment) {
-    const ulong key = oit_peeling_key(place, fragment);
-    const size_t front = 2 * place->pixel, back = front + 1;
+    const ulong key = oit_peeling_key(location, fragment);
+    const size_t front = 2 * location->pixel, back = front + 1;
     if (key == current[front]) {
         oit_keep(nodes, front, frame, fragment);
     } else if (key == current[back]) {
@@ -68,8 +68,8 @@ kernel void oit_peel(global ulong* current, global ulong* next, global const uin
     next[back] = OIT_FIRST_KEY;
 }
 
-kernel void oit_finish_peeling(global const float* front_state, global const float* back_state,
-                               OIT_SCREEN) {
+kernel void oit_finish_dual_peeling(global const float* front_state, global const float* back_state,
+                                    OIT_SCREEN) {
     OitPixel pixel;
     if (!oit_pixel(OIT_SCREEN_PASS, &pixel)) return;
     OitLights lights = oit_load(front_state, &pixel);

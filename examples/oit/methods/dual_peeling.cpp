@@ -10,11 +10,11 @@ struct Keys {
     cl_ulong front, back;
 };
 
-std::string refusal(const Frame& frame, const Needs& needs) {
-    if (needs.has(Blend::absorb) || needs.has(Blend::user))
+std::string refusal(const Frame& frame, const FrameFeatures& features) {
+    if (features.has(Blend::absorb) || features.has(Blend::user))
         return "it blends from both sides and does not know the distances between layers";
     if (frame.quality.layers) return "it takes the farthest layers together with the nearest";
-    return peeling_refusal(frame, needs);
+    return peeling_refusal(frame, features);
 }
 
 class DualPeeling : public Method {
@@ -25,7 +25,7 @@ public:
           peel_(source.screen_kernel(peeling_text(kernels::dual_peeling_cl), "dual_peeling.cl",
                                      "oit_peel")),
           finish_(source.screen_kernel(peeling_text(kernels::dual_peeling_cl), "dual_peeling.cl",
-                                       "oit_finish_peeling")),
+                                       "oit_finish_dual_peeling")),
           current_(source.device(), source.frame().pixels()),
           next_(source.device(), source.frame().pixels()),
           nodes_(source.device(), 2 * source.layout().words * source.frame().pixels()),
@@ -65,7 +65,7 @@ private:
 };
 
 // The first takes no layer.
-std::uint64_t passes(const SceneMeasure& scene, const Quality&) {
+std::uint64_t passes(const SurveyResult& scene, const Quality&) {
     return (scene.longest + 1) / 2 + 1;
 }
 

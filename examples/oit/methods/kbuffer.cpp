@@ -24,7 +24,7 @@ std::unique_ptr<Method> make(FragmentSource& source) {
     return make_list_method(source, options);
 }
 
-std::string refusal(const Frame& frame, const Needs&) {
+std::string refusal(const Frame& frame, const FrameFeatures&) {
     const Quality& quality = frame.quality;
     if (!quality.size || !quality.layers || *quality.layers <= *quality.size) return {};
     return "it keeps " + std::to_string(*quality.size) + " layers, and cannot blend " +
@@ -32,7 +32,7 @@ std::string refusal(const Frame& frame, const Needs&) {
 }
 
 // Its slots hold the nearest layers.
-std::optional<PictureError> bound(const SceneMeasure& scene, const Quality& quality) {
+std::optional<PictureError> bound(const SurveyResult& scene, const Quality& quality) {
     Quality nearest = quality;
     nearest.layers = std::min(slots_of(quality), quality.layers.value_or(~0U));
     return bound_of_layers(scene, nearest);

@@ -49,7 +49,7 @@ public:
           options_(options),
           fragments_(lists_with(options)),
           pass_(source.pass(kernels::lists_cl, "lists.cl", *fragments_)),
-          settles_(keeps_all()),
+          may_fix_capacity_(keeps_all()),
           longer_(source.device(), 1) {
         const Quality& quality = source.frame().quality;
         sorts_ = needs_sorting(quality, reader);
@@ -60,16 +60,16 @@ public:
     }
 
     void store() override {
-        if (known_) settle(*std::exchange(known_, std::nullopt));
+        if (last_lengths_) fix_capacity(*std::exchange(last_lengths_, std::nullopt));
         const auto draw = [this] { source_.draw(pass_, *fragments_); };
-        if (settled_)
+        if (has_fixed_capacity_)
             built_ = fragments_->build_async(draw);
         else
             fragments_->build(draw);
     }
 
     void resolve() override {
-        if (settled_ && sorter_) {
+        if (has_fixed_capacity_ && sorter_) {
             source_.run_on_screen(*sorter_, *fragments_, longer_);
             longer_read_ = longer_.download_async();
             return;
@@ -79,13 +79,13 @@ public:
     }
 
     [[nodiscard]] bool complete() override {
-        if (!settled_) {
-            if (settles_) known_ = fragments_->lengths();
+        if (!has_fixed_capacity_) {
+            if (may_fix_capacity_) last_lengths_ = fragments_->lengths();
             return true;
         }
         const bool fitted = built_.get().dropped == 0;
         if (fitted && !(sorter_ && longer_read_.get().front() != 0)) return true;
-        unsettle();
+        grow_again();
         return false;
     }
 
@@ -99,7 +99,7 @@ public:
         const cellist::HostLists<Node> lists = fragments_->download();
         StoredDepths stored{{lists.offsets().begin(), lists.offsets().end()}, {}};
         for (const Node& node : lists.records())
-            stored.depths.push_back(source_.layout().depth_of(node.key, source_.needs()));
+            stored.depths.push_back(source_.layout().depth_of(node.key, source_.features()));
         return stored;
     }
 
@@ -108,7 +108,7 @@ private:
 
     // Makes a pool for as many fragments as there were, and a quarter more. Where that is more than
     // the budget or the device has, though the demand itself was not, lists go on to grow.
-    void settle(const cellist::Lengths& lengths) {
+    void fix_capacity(const cellist::Lengths& lengths) {
         const auto more = [](std::uint64_t n) { return n + n / 4 + 1; };
         cellist::ListsOptions options = options_;
         options.overflow = cellist::Overflow::drop;
@@ -122,7 +122,7 @@ private:
             *fragments_ = lists_with(options_);
             *fragments_ = lists_with(options);
         } catch (const cellist::Error&) {
-            settles_ = false;
+            may_fix_capacity_ = false;
             return;
         }
         if (may_sort_on_the_way_ && longest <= sorted_on_the_way_max)
@@ -131,12 +131,12 @@ private:
         else
             sorter_.reset();
         longer_.fill(0);
-        settled_ = true;
+        has_fixed_capacity_ = true;
     }
 
-    void unsettle() {
+    void grow_again() {
         *fragments_ = lists_with(options_);
-        settled_ = false;
+        has_fixed_capacity_ = false;
     }
 
     [[nodiscard]] cellist::Lists<Node> lists_with(const cellist::ListsOptions& options) const {
@@ -155,10 +155,10 @@ private:
     bool may_sort_on_the_way_ = false;
     std::optional<cellist::Kernel> reader_;
     std::optional<cellist::Kernel> sorter_;  // reads lists that are not sorted
-    bool settles_;
-    bool settled_ = false;
-    std::optional<cellist::Lengths> known_;  // of the last frame, where the next one settles
-    cellist::Buffer<cl_uint> longer_;        // not 0 where it met a list that is too long
+    bool may_fix_capacity_;
+    bool has_fixed_capacity_ = false;
+    std::optional<cellist::Lengths> last_lengths_;  // of the last frame, for fix_capacity()
+    cellist::Buffer<cl_uint> longer_;               // not 0 where it met a list that is too long
     cellist::Pending<cellist::BuildReport> built_;
     cellist::Pending<std::vector<cl_uint>> longer_read_;
 };

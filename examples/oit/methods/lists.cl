@@ -5,9 +5,9 @@
 #define OIT_TARGET CELLIST_LISTS(OIT_NODE, fragments)
 #define OIT_TARGET_PASS CELLIST_PASS(fragments)
 
-static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitPlace* place,
+static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitLocation* location,
                              const OitFragment* fragment) {
-    cellist_insert(fragments, cellist_cell3(fragments, place->x, place->y, place->eye),
+    cellist_insert(fragments, cellist_cell3(fragments, location->x, location->y, location->eye),
                    oit_pack(frame, fragment));
 }
 

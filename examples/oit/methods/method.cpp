@@ -48,23 +48,23 @@ std::uint32_t read_size_of(const MethodInfo& method, const std::string& text) {
                               (known.empty() ? "': it has no sizes" : "': the sizes are " + known));
 }
 
-std::optional<PictureError> no_bound(const SceneMeasure&, const Quality&) { return {}; }
+std::optional<PictureError> no_bound(const SurveyResult&, const Quality&) { return {}; }
 
-std::optional<PictureError> bound_of_layers(const SceneMeasure& scene, const Quality& quality) {
+std::optional<PictureError> bound_of_layers(const SurveyResult& scene, const Quality& quality) {
     const bool all = !quality.layers || *quality.layers >= scene.longest;
     if (all && quality.epsilon == 0) return scene.format(quality.format);
     if (quality.format != NodeFormat::float32) return {};
     if (!all && quality.epsilon > 0) return {};
-    const SceneMeasure::Cut* cut =
+    const SurveyResult::Cut* cut =
         all ? scene.epsilon_cut(quality.epsilon) : scene.layers_cut(*quality.layers);
     if (cut == nullptr) return {};
     return cut->error;
 }
 
-std::uint64_t one_pass(const SceneMeasure&, const Quality&) { return 1; }
+std::uint64_t one_pass(const SurveyResult&, const Quality&) { return 1; }
 
-std::uint64_t two_passes(const SceneMeasure&, const Quality&) { return 2; }
+std::uint64_t two_passes(const SurveyResult&, const Quality&) { return 2; }
 
-std::string refuses_nothing(const Frame&, const Needs&) { return {}; }
+std::string refuses_nothing(const Frame&, const FrameFeatures&) { return {}; }
 
 }  // namespace oit

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "budget/scene_measure.hpp"
+#include "budget/survey_result.hpp"
 #include "frame/fragment_source.hpp"
 
 namespace oit {
@@ -51,14 +51,14 @@ public:
 };
 
 /// For methods of which no bound is known.
-[[nodiscard]] std::optional<PictureError> no_bound(const SceneMeasure& scene,
+[[nodiscard]] std::optional<PictureError> no_bound(const SurveyResult& scene,
                                                    const Quality& quality);
 /// Of methods that blend all layers, packed in their order; or the nearest, or until little light
 /// passes, in float.
-[[nodiscard]] std::optional<PictureError> bound_of_layers(const SceneMeasure& scene,
+[[nodiscard]] std::optional<PictureError> bound_of_layers(const SurveyResult& scene,
                                                           const Quality& quality);
-[[nodiscard]] std::uint64_t one_pass(const SceneMeasure& scene, const Quality& quality);
-[[nodiscard]] std::uint64_t two_passes(const SceneMeasure& scene, const Quality& quality);
+[[nodiscard]] std::uint64_t one_pass(const SurveyResult& scene, const Quality& quality);
+[[nodiscard]] std::uint64_t two_passes(const SurveyResult& scene, const Quality& quality);
 
 /// A line of the table of methods.
 struct MethodInfo {
@@ -72,15 +72,15 @@ struct MethodInfo {
     /// where there is no such choice.
     std::span<const std::uint32_t> sizes = {};
     /// Why it cannot draw a frame, or nothing.
-    std::string (*refusal)(const Frame& frame, const Needs& needs);
+    std::string (*refusal)(const Frame& frame, const FrameFeatures& features);
     /// Refers to the source, which must outlive the method.
     std::unique_ptr<Method> (*make)(FragmentSource& source);
     /// The error of its picture at most, apart from what depends on an order that float depths do not
     /// tell; nothing where theory has no bound.
-    std::optional<PictureError> (*bound)(const SceneMeasure& scene,
+    std::optional<PictureError> (*bound)(const SurveyResult& scene,
                                          const Quality& quality) = no_bound;
     /// How often it draws the transparent surfaces, at least.
-    std::uint64_t (*passes)(const SceneMeasure& scene, const Quality& quality) = one_pass;
+    std::uint64_t (*passes)(const SurveyResult& scene, const Quality& quality) = one_pass;
 };
 
 /// Puts a method into the table: a constant in the method's file.
@@ -99,6 +99,6 @@ public:
 [[nodiscard]] std::uint32_t read_size_of(const MethodInfo& method, const std::string& text);
 
 /// For methods that draw every frame.
-[[nodiscard]] std::string refuses_nothing(const Frame& frame, const Needs& needs);
+[[nodiscard]] std::string refuses_nothing(const Frame& frame, const FrameFeatures& features);
 
 }  // namespace oit

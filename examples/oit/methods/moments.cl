@@ -8,7 +8,6 @@
 //   nearest  the least depth of each sample, as bits of floats
 //   sums     5 for each sample: of colour and weight, and of absorbance
 
-#ifdef OIT_PASS
 #ifdef OIT_MOMENTS
 #define OIT_TARGET volatile global long *moments, volatile global uint *nearest
 #define OIT_TARGET_PASS moments, nearest
@@ -88,12 +87,12 @@ static inline float oit_weight(const OitFrame* frame, global const long* moments
 }
 #endif
 
-static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitPlace* place,
+static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitLocation* location,
                              const OitFragment* fragment) {
     const float z = oit_moment_depth(frame, fragment->depth);
     for (int s = 0; s < OIT_SAMPLES; ++s) {
         if (!(fragment->coverage >> s & 1)) continue;
-        const size_t sample = place->pixel * OIT_SAMPLES + s;
+        const size_t sample = location->pixel * OIT_SAMPLES + s;
 #ifdef OIT_MOMENTS
         if (fragment->alpha > 0.0f) atomic_min(&nearest[sample], as_uint(fragment->depth));
         float power = fmin(oit_absorbance(fragment->alpha), OIT_MOMENT_ABSORBANCE_MAX);
@@ -109,17 +108,3 @@ static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitPlace* 
 #endif
     }
 }
-
-#else
-
-kernel void oit_resolve_moments(global const long* sums, OIT_SCREEN) {
-    OitPixel pixel;
-    if (!oit_pixel(OIT_SCREEN_PASS, &pixel)) return;
-    OitLights lights = oit_lights();
-    for (int i = 0; i < OIT_LIGHTS; ++i) {
-        const size_t sample = pixel.pixel * OIT_SAMPLES + pixel.first_sample + i;
-        oit_set_light(&lights.of[i], &pixel.frame, sums + 5 * sample);
-    }
-    oit_write(OIT_SCREEN_PASS, &pixel, &lights);
-}
-#endif

@@ -9,16 +9,14 @@ std::string text(const std::string& defines = {}) {
     return defines + accumulating_text(kernels::moments_cl);
 }
 
-class Moments : public Method {
+class Moments : public AccumulatingMethod {
 public:
     explicit Moments(FragmentSource& source)
-        : source_(source),
+        : AccumulatingMethod(source),
           sum_moments_(source.pass(text("#define OIT_MOMENTS\n"), "moments.cl")),
           add_(source.pass(text(), "moments.cl")),
-          resolve_(source.screen_kernel(text(), "moments.cl", "oit_resolve_moments")),
           moments_(source.device(), 5 * source.samples()),
-          nearest_(source.device(), source.samples()),
-          sums_(source.device(), 5 * source.samples()) {}
+          nearest_(source.device(), source.samples()) {}
 
     void store() override {
         moments_.fill(0);
@@ -27,20 +25,16 @@ public:
         source_.draw(sum_moments_, moments_, nearest_);
         source_.draw(add_, moments_, nearest_, sums_);
     }
-    void resolve() override { source_.run_on_screen(resolve_, sums_); }
     [[nodiscard]] std::uint64_t device_bytes() const override {
-        return (moments_.size() + sums_.size()) * sizeof(cl_long) +
+        return AccumulatingMethod::device_bytes() + moments_.size() * sizeof(cl_long) +
                nearest_.size() * sizeof(cl_uint);
     }
 
 private:
-    FragmentSource& source_;
     raster::Pass sum_moments_;
     raster::Pass add_;
-    cellist::Kernel resolve_;
     cellist::Buffer<cl_long> moments_;
     cellist::Buffer<cl_uint> nearest_;
-    cellist::Buffer<cl_long> sums_;
 };
 
 const MethodRegistration moments(

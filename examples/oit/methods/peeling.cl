@@ -8,14 +8,14 @@
 #define OIT_TARGET global const ulong *current, volatile global ulong *next, global uint *nodes
 #define OIT_TARGET_PASS current, next, nodes
 
-static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitPlace* place,
+static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitLocation* location,
                              const OitFragment* fragment) {
-    const ulong key = oit_peeling_key(place, fragment);
-    const ulong now = current[place->pixel];
+    const ulong key = oit_peeling_key(location, fragment);
+    const ulong now = current[location->pixel];
     if (key == now)
-        oit_keep(nodes, place->pixel, frame, fragment);
+        oit_keep(nodes, location->pixel, frame, fragment);
     else if (key > now)
-        atom_min(&next[place->pixel], key);
+        atom_min(&next[location->pixel], key);
 }
 
 #else
@@ -40,12 +40,5 @@ kernel void oit_peel(global ulong* current, global ulong* next, global const uin
     current[pixel.pixel] = then;
     next[pixel.pixel] = OIT_LAST_KEY;
     if (then != OIT_LAST_KEY) *left = 1;
-}
-
-kernel void oit_finish_peeling(global const float* state, OIT_SCREEN) {
-    OitPixel pixel;
-    if (!oit_pixel(OIT_SCREEN_PASS, &pixel)) return;
-    OitLights lights = oit_load(state, &pixel);
-    oit_write(OIT_SCREEN_PASS, &pixel, &lights);
 }
 #endif

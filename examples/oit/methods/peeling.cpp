@@ -54,7 +54,7 @@ private:
     cellist::Buffer<cl_uint> left_;
 };
 
-std::uint64_t passes(const SceneMeasure& scene, const Quality& quality) {
+std::uint64_t passes(const SurveyResult& scene, const Quality& quality) {
     return std::min<std::uint64_t>(scene.longest, quality.layers.value_or(~0U)) + 1;
 }
 

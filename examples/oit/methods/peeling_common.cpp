@@ -9,7 +9,7 @@ std::string peeling_text(std::string_view source) {
     return std::string(kernels::peeling_common_clh).append("\n").append(source);
 }
 
-std::string peeling_refusal(const Frame& frame, const Needs&) {
+std::string peeling_refusal(const Frame& frame, const FrameFeatures&) {
     if (frame.quality.depth_range) return "it has no depth for each sample";
     if (frame.quality.samples > 1 && frame.quality.resolve == Resolve::per_sample)
         return "it resolves samples by pixel";

@@ -17,7 +17,7 @@ inline constexpr cl_ulong last_key = ~cl_ulong{0};
 [[nodiscard]] std::string peeling_text(std::string_view source);
 
 /// They blend all samples of a pixel at once, and one fragment after the other.
-[[nodiscard]] std::string peeling_refusal(const Frame& frame, const Needs& needs);
+[[nodiscard]] std::string peeling_refusal(const Frame& frame, const FrameFeatures& features);
 
 /// Throws InputError where the device has no atomic minimum of 64 bits.
 void require_wide_atomics(const cellist::Device& device, std::string_view what);

@@ -7,7 +7,7 @@ namespace oit {
 namespace {
 
 std::unique_ptr<Method> make_method(FragmentSource& source, const MethodInfo& info) {
-    const std::string refusal = info.refusal(source.frame(), source.needs());
+    const std::string refusal = info.refusal(source.frame(), source.features());
     if (!refusal.empty())
         throw support::InputError("the method " + std::string(info.name) +
                                   " cannot draw this: " + refusal);
@@ -50,6 +50,7 @@ void Renderer::resolve() {
     method_->resolve();
     source_.finish();
     if (reduction_) reduction_->finish(source_);
+    drawn_ = device_.enqueue_marker();
 }
 
 bool Renderer::complete() {
@@ -73,19 +74,17 @@ double Renderer::draw() {
 
 void Renderer::start() {
     transform();
-    store_and_resolve();
+    store();
+    resolve();
     device_.queue().flush();
 }
 
 void Renderer::finish() {
-    while (!complete()) store_and_resolve();
+    while (!complete()) {
+        store();
+        resolve();
+    }
     drawn_.wait();
-}
-
-void Renderer::store_and_resolve() {
-    store();
-    resolve();
-    drawn_ = device_.enqueue_marker();
 }
 
 double Renderer::draw_changed() {

@@ -41,7 +41,7 @@ public:
     void finish();
     /// The same as draw() where the frame has another time, or other views of the same size.
     double draw_changed();
-    /// The same as draw() with a wait behind each pass, so that a frame takes longer.
+    /// The same as draw() with a wait after each pass, so that a frame takes longer.
     PassTimes draw_by_pass();
 
     /// The linear image, eye by eye, row by row from the top.
@@ -51,7 +51,7 @@ public:
         return reduction_ ? reduction_->image() : source_.image();
     }
     [[nodiscard]] const Method& method() const { return *method_; }
-    [[nodiscard]] const Needs& needs() const { return source_.needs(); }
+    [[nodiscard]] const FrameFeatures& features() const { return source_.features(); }
     [[nodiscard]] const NodeLayout& layout() const { return source_.layout(); }
     /// Everything that the renderer holds on the device.
     [[nodiscard]] std::uint64_t device_bytes() const {
@@ -63,7 +63,6 @@ private:
     void transform();
     void store();
     void resolve();
-    void store_and_resolve();
     [[nodiscard]] bool complete();
 
     const cellist::Device& device_;

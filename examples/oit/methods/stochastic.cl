@@ -6,7 +6,6 @@
 //   depths  OIT_TRIALS: least depth that hides, as bits of floats
 //   sums    5: of colour and weight, and of absorbance
 
-#ifdef OIT_PASS
 #ifdef OIT_HIDE
 #define OIT_TARGET volatile global uint* depths
 #define OIT_TARGET_PASS depths
@@ -22,13 +21,13 @@ static inline uint oit_hash(uint x) {
     return x ^ (x >> 16);
 }
 
-static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitPlace* place,
+static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitLocation* location,
                              const OitFragment* fragment) {
     for (int s = 0; s < OIT_SAMPLES; ++s) {
         if (!(fragment->coverage >> s & 1)) continue;
-        const size_t sample = place->pixel * OIT_SAMPLES + s;
+        const size_t sample = location->pixel * OIT_SAMPLES + s;
 #ifdef OIT_HIDE
-        const uint seed = oit_hash((uint)sample + oit_hash(place->order));
+        const uint seed = oit_hash((uint)sample + oit_hash(location->order));
         for (uint trial = 0; trial < OIT_TRIALS; ++trial) {
             const float chance = (float)(oit_hash(seed + trial) >> 8) * 0x1p-24f;
             if (chance < fragment->alpha)
@@ -45,17 +44,3 @@ static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitPlace* 
 #endif
     }
 }
-
-#else
-
-kernel void oit_resolve_stochastic(global const long* sums, OIT_SCREEN) {
-    OitPixel pixel;
-    if (!oit_pixel(OIT_SCREEN_PASS, &pixel)) return;
-    OitLights lights = oit_lights();
-    for (int i = 0; i < OIT_LIGHTS; ++i) {
-        const size_t sample = pixel.pixel * OIT_SAMPLES + pixel.first_sample + i;
-        oit_set_light(&lights.of[i], &pixel.frame, sums + 5 * sample);
-    }
-    oit_write(OIT_SCREEN_PASS, &pixel, &lights);
-}
-#endif

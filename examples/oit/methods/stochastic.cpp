@@ -19,15 +19,13 @@ std::string text(const FragmentSource& source, const std::string& defines = {}) 
            accumulating_text(kernels::stochastic_cl);
 }
 
-class Stochastic : public Method {
+class Stochastic : public AccumulatingMethod {
 public:
     explicit Stochastic(FragmentSource& source)
-        : source_(source),
+        : AccumulatingMethod(source),
           hide_(source.pass(text(source, "#define OIT_HIDE\n"), "stochastic.cl")),
           add_(source.pass(text(source), "stochastic.cl")),
-          resolve_(source.screen_kernel(text(source), "stochastic.cl", "oit_resolve_stochastic")),
-          depths_(source.device(), trials_of(source) * source.samples()),
-          sums_(source.device(), 5 * source.samples()) {}
+          depths_(source.device(), trials_of(source) * source.samples()) {}
 
     void store() override {
         depths_.fill(infinity_bits);
@@ -35,18 +33,14 @@ public:
         source_.draw(hide_, depths_);
         source_.draw(add_, depths_, sums_);
     }
-    void resolve() override { source_.run_on_screen(resolve_, sums_); }
     [[nodiscard]] std::uint64_t device_bytes() const override {
-        return depths_.size() * sizeof(cl_uint) + sums_.size() * sizeof(cl_long);
+        return AccumulatingMethod::device_bytes() + depths_.size() * sizeof(cl_uint);
     }
 
 private:
-    FragmentSource& source_;
     raster::Pass hide_;
     raster::Pass add_;
-    cellist::Kernel resolve_;
     cellist::Buffer<cl_uint> depths_;
-    cellist::Buffer<cl_long> sums_;
 };
 
 const MethodRegistration stochastic(

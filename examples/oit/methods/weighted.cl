@@ -3,7 +3,6 @@
 // their order. The weights are those of the paper, divided by the greatest.
 // sums: 5 for each sample: of colour and weight, and of absorbance.
 
-#ifdef OIT_PASS
 #define OIT_TARGET volatile global long* sums
 #define OIT_TARGET_PASS sums
 
@@ -12,27 +11,13 @@ static inline float oit_weight(float unit_depth) {
     return fmax(1e-2f / 3e3f, near * near * near);
 }
 
-static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitPlace* place,
+static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitLocation* location,
                              const OitFragment* fragment) {
     const float weight = fragment->alpha * oit_weight(oit_unit_depth(frame, fragment->depth));
     for (int s = 0; s < OIT_SAMPLES; ++s) {
         if (!(fragment->coverage >> s & 1)) continue;
-        volatile global long* own = sums + 5 * (place->pixel * OIT_SAMPLES + s);
+        volatile global long* own = sums + 5 * (location->pixel * OIT_SAMPLES + s);
         oit_accumulate_colour(own, frame, fragment->colour, weight);
         oit_accumulate_absorbance(&own[4], oit_absorbance(fragment->alpha));
     }
 }
-
-#else
-
-kernel void oit_resolve_weighted(global const long* sums, OIT_SCREEN) {
-    OitPixel pixel;
-    if (!oit_pixel(OIT_SCREEN_PASS, &pixel)) return;
-    OitLights lights = oit_lights();
-    for (int i = 0; i < OIT_LIGHTS; ++i) {
-        const size_t sample = pixel.pixel * OIT_SAMPLES + pixel.first_sample + i;
-        oit_set_light(&lights.of[i], &pixel.frame, sums + 5 * sample);
-    }
-    oit_write(OIT_SCREEN_PASS, &pixel, &lights);
-}
-#endif

@@ -5,29 +5,19 @@
 namespace oit {
 namespace {
 
-class Weighted : public Method {
+class Weighted : public AccumulatingMethod {
 public:
     explicit Weighted(FragmentSource& source)
-        : source_(source),
-          pass_(source.pass(accumulating_text(kernels::weighted_cl), "weighted.cl")),
-          resolve_(source.screen_kernel(accumulating_text(kernels::weighted_cl), "weighted.cl",
-                                        "oit_resolve_weighted")),
-          sums_(source.device(), 5 * source.samples()) {}
+        : AccumulatingMethod(source),
+          pass_(source.pass(accumulating_text(kernels::weighted_cl), "weighted.cl")) {}
 
     void store() override {
         sums_.fill(0);
         source_.draw(pass_, sums_);
     }
-    void resolve() override { source_.run_on_screen(resolve_, sums_); }
-    [[nodiscard]] std::uint64_t device_bytes() const override {
-        return sums_.size() * sizeof(cl_long);
-    }
 
 private:
-    FragmentSource& source_;
     raster::Pass pass_;
-    cellist::Kernel resolve_;
-    cellist::Buffer<cl_long> sums_;
 };
 
 const MethodRegistration weighted(

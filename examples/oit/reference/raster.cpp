@@ -105,31 +105,27 @@ void scan(std::array<Corner, 3> c, const raster::View& view,
 }  // namespace
 
 void for_each_cover(
-    const support::Mesh& mesh, const raster::RasterInstance& instance, const raster::View& view,
-    int samples,
+    const support::Mesh& mesh, const Projection<float>& projection, int samples,
     const std::function<void(std::size_t triangle, const ReferenceCover& cover)>& emit) {
+    const raster::View& view = projection.view();
     const auto offsets = raster::sample_offsets(samples);
-    for (std::size_t index = 0; index < mesh.triangles.size(); ++index) {
-        raster::RasterPolygon polygon{};
-        int outside = 0;
-        for (int k = 0; k < 3; ++k) {
-            const glm::vec3& p = mesh.positions[mesh.triangles[index][static_cast<std::size_t>(k)]];
-            polygon.vertex[k] = raster::raster_corner(&instance, k, p.x, p.y, p.z);
-            outside |= raster::raster_outside(&view, polygon.vertex[k].x, polygon.vertex[k].y,
-                                              polygon.vertex[k].w);
-        }
-        polygon.count = 3;
-        if (outside != 0) raster::raster_clip(&view, &polygon);
-        const auto corner = [&](int i) {
-            const raster::RasterClipVertex& v = polygon.vertex[i];
-            return Corner{raster::raster_snap(v.x, v.w, view.width),
-                          raster::raster_snap(v.y, v.w, view.height),
-                          static_cast<double>(v.w),
-                          {static_cast<double>(v.share[0]), static_cast<double>(v.share[1]),
-                           static_cast<double>(v.share[2])}};
+    const auto corner = [&](const Projection<float>::Vertex& v) {
+        const auto snapped = [](float position, int side) {
+            return static_cast<int>(std::rint(position)) + side * (RASTER_SUBPIXELS / 2);
         };
-        for (int piece = 0; piece + 2 < polygon.count; ++piece)
-            scan({corner(0), corner(piece + 1), corner(piece + 2)}, view, offsets,
+        const auto [x, y] = projection.position(v);
+        return Corner{snapped(x, view.width),
+                      snapped(y, view.height),
+                      static_cast<double>(v.w),
+                      {static_cast<double>(v.shares[0]), static_cast<double>(v.shares[1]),
+                       static_cast<double>(v.shares[2])}};
+    };
+    for (std::size_t index = 0; index < mesh.triangles.size(); ++index) {
+        const auto& [a, b, c] = mesh.triangles[index];
+        const Projection<float>::Polygon polygon =
+            projection.clipped({mesh.positions[a], mesh.positions[b], mesh.positions[c]});
+        for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
+            scan({corner(polygon[0]), corner(polygon[i]), corner(polygon[i + 1])}, view, offsets,
                  [&](const ReferenceCover& cover) { emit(index, cover); });
     }
 }

@@ -5,11 +5,11 @@
 #include <functional>
 
 #include "mesh.hpp"
-#include "raster/rasteriser.hpp"
+#include "reference/projection.hpp"
 
 namespace oit {
 
-/// What a triangle covers of a pixel: as RasterFragment, in double precision.
+/// What a triangle covers of a pixel, in double precision.
 struct ReferenceCover {
     int x, y;
     std::uint32_t coverage;
@@ -20,10 +20,9 @@ struct ReferenceCover {
 };
 
 /// Calls emit(triangle, cover) for every pixel that a triangle of a placed mesh covers in a view.
-/// Geometry is snapped as on the device; coverage is decided in integers, all else in double.
+/// Coverage is decided in integers of snapped geometry, all else is in double.
 void for_each_cover(
-    const support::Mesh& mesh, const raster::RasterInstance& instance, const raster::View& view,
-    int samples,
+    const support::Mesh& mesh, const Projection<float>& projection, int samples,
     const std::function<void(std::size_t triangle, const ReferenceCover& cover)>& emit);
 
 }  // namespace oit

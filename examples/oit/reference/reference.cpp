@@ -38,13 +38,13 @@ struct OpaqueSample {
     dvec3 colour{0.0};
 };
 
-class Painter {
+class ReferenceRenderer {
 public:
-    Painter(const Frame& frame, const ReferenceOptions& options)
+    ReferenceRenderer(const Frame& frame, const ReferenceOptions& options)
         : frame_(frame),
           options_(options),
-          needs_(needs_of(frame)),
-          layout_(node_layout(frame.quality, needs_)),
+          features_(features_of(frame)),
+          layout_(node_layout(frame.quality, features_)),
           samples_(static_cast<std::size_t>(frame.quality.samples)),
           opaque_(frame.pixels() * samples_) {
         reference_.width = static_cast<std::size_t>(frame.width());
@@ -76,11 +76,10 @@ private:
             for (const Instance& instance : frame_.scene.instances) {
                 if (frame_.scene.is_opaque(instance) != opaque) continue;
                 const support::Mesh& mesh = model_of(instance).mesh;
-                const raster::RasterInstance placed =
-                    raster::instance_of({.to_world = place_at(instance, frame_.time)},
-                                        frame_.views[eye], static_cast<cl_uint>(eye));
+                const Projection<float> placed(transform_at(instance, frame_.time),
+                                               frame_.views[eye]);
                 std::size_t last = 0;
-                for_each_cover(mesh, placed, frame_.views[eye], frame_.quality.samples,
+                for_each_cover(mesh, placed, frame_.quality.samples,
                                [&](std::size_t triangle, const ReferenceCover& cover) {
                                    if (triangle / 1024 != last / 1024) report(done_ + triangle);
                                    last = triangle;
@@ -94,7 +93,7 @@ private:
     [[nodiscard]] bool too_close(double a, double b) const {
         // Infinity is the depth of no surface, which is close to nothing.
         return std::isfinite(a) && std::isfinite(b) &&
-               std::abs(a - b) <= layout_.depth_resolution(needs_).at(std::max(a, b));
+               std::abs(a - b) <= layout_.depth_resolution(features_).at(std::max(a, b));
     }
     // The same for depths that are compared before they are stored.
     [[nodiscard]] static bool float_too_close(double a, double b) {
@@ -113,15 +112,13 @@ private:
                static_cast<std::size_t>(x);
     }
 
-    [[nodiscard]] dvec3 normal_of(const Instance& instance, const raster::RasterInstance& placed,
+    [[nodiscard]] dvec3 normal_of(const Instance& instance, const Projection<float>& placed,
                                   std::size_t triangle, const ReferenceCover& cover) const {
         const support::Mesh& mesh = model_of(instance).mesh;
         dvec3 normal(0);
         for (std::size_t j = 0; j < 3; ++j)
             normal += cover.weight[j] * dvec3(mesh.normals[mesh.triangles[triangle][j]]);
-        return {glm::dot(to_double(placed.normal_x), normal),
-                glm::dot(to_double(placed.normal_y), normal),
-                glm::dot(to_double(placed.normal_z), normal)};
+        return placed.normal(normal);
     }
 
     // The tint of the side that is seen.
@@ -137,11 +134,10 @@ private:
         return tint * factor;
     }
 
-    void cover_opaque(std::size_t eye, const Instance& instance,
-                      const raster::RasterInstance& placed, std::size_t triangle,
-                      const ReferenceCover& cover) {
+    void cover_opaque(std::size_t eye, const Instance& instance, const Projection<float>& placed,
+                      std::size_t triangle, const ReferenceCover& cover) {
         const Material& material = frame_.scene.material_of(instance);
-        const ReferenceShading shading(frame_.scene.look, frame_.views[eye]);
+        const ReferenceShading shading(frame_.scene.lighting, frame_.views[eye]);
         const std::size_t pixel = pixel_of(eye, cover.x, cover.y);
         const bool is_floor = material.paint == static_cast<cl_uint>(Paint::floor);
         const dvec3 colour = is_floor
@@ -160,7 +156,7 @@ private:
     }
 
     void cover_transparent(std::size_t eye, const Instance& instance,
-                           const raster::RasterInstance& placed, std::size_t triangle,
+                           const Projection<float>& placed, std::size_t triangle,
                            const ReferenceCover& cover) {
         const std::size_t pixel = pixel_of(eye, cover.x, cover.y);
         std::uint32_t visible = 0;
@@ -173,7 +169,7 @@ private:
         if (visible == 0) return;
 
         const Material& material = frame_.scene.material_of(instance);
-        const ReferenceShading shading(frame_.scene.look, frame_.views[eye]);
+        const ReferenceShading shading(frame_.scene.lighting, frame_.views[eye]);
         const auto blend = static_cast<Blend>(material.blend);
         const auto gloss = static_cast<double>(material.gloss);
         dvec3 tint = tint_of(instance, triangle, cover);
@@ -260,7 +256,7 @@ private:
             std::abs(a.sample_depth[s] - a.depth) + std::abs(b.sample_depth[s] - b.depth);
         const double most = std::max(a.sample_depth[s], b.sample_depth[s]);
         return std::abs(a.sample_depth[s] - b.sample_depth[s]) <=
-               layout_.depth_resolution(needs_).at(most) + half * steep;
+               layout_.depth_resolution(features_).at(most) + half * steep;
     }
 
     void blend(std::size_t p) {
@@ -268,7 +264,7 @@ private:
         const auto height = static_cast<std::size_t>(frame_.height());
         const std::size_t eye = p / (width * height);
         const auto x = static_cast<int>(p % width), y = static_cast<int>(p / width % height);
-        const ReferenceShading shading(frame_.scene.look, frame_.views[eye]);
+        const ReferenceShading shading(frame_.scene.lighting, frame_.views[eye]);
 
         const std::span<ReferenceFragment> list(
             reference_.fragments.begin() + static_cast<std::ptrdiff_t>(reference_.offsets[p]),
@@ -301,7 +297,7 @@ private:
 
     const Frame& frame_;
     const ReferenceOptions& options_;
-    Needs needs_;
+    FrameFeatures features_;
     NodeLayout layout_;
     std::size_t samples_;
     std::vector<OpaqueSample> opaque_;
@@ -326,9 +322,9 @@ std::uint64_t Reference::most_layers() const {
 }
 
 Reference draw_reference(const Frame& frame, const ReferenceOptions& options) {
-    if (needs_of(frame).has(Blend::user) && !options.blend)
+    if (features_of(frame).has(Blend::user) && !options.blend)
         throw support::InputError("a blend function in OpenCL C has no reference to compare with");
-    return Painter(frame, options).draw();
+    return ReferenceRenderer(frame, options).draw();
 }
 
 }  // namespace oit

@@ -3,7 +3,7 @@
 #include <glm/vec3.hpp>
 
 #include "raster/view.hpp"
-#include "scene/look.hpp"
+#include "scene/lighting.hpp"
 #include "scene/material.hpp"
 
 namespace oit {
@@ -12,7 +12,8 @@ namespace oit {
 class ReferenceShading {
 public:
     /// Refers to both.
-    ReferenceShading(const Look& look, const raster::View& view) : look_(look), view_(view) {}
+    ReferenceShading(const Lighting& lighting, const raster::View& view)
+        : lighting_(lighting), view_(view) {}
 
     [[nodiscard]] glm::dvec3 ray(int x, int y) const;
     /// A surface with a normal of any length, seen in a pixel.
@@ -22,7 +23,7 @@ public:
     [[nodiscard]] glm::dvec3 floor(int x, int y) const;
 
 private:
-    const Look& look_;
+    const Lighting& lighting_;
     const raster::View& view_;
 };
 

@@ -15,7 +15,7 @@
 namespace oit {
 namespace {
 
-using Fate = Candidate::Fate;
+using Outcome = Candidate::Outcome;
 
 std::string percent(double part) {
     return fixed(100 * part, 100 * part < 1 && part > 0 ? 3 : 1) + " %";
@@ -33,7 +33,7 @@ std::string short_text(const Setting& setting) {
 }
 
 // Half of the pixels that have layers have no more than this.
-std::uint64_t median_layers(const SceneMeasure& scene) {
+std::uint64_t median_layers(const SurveyResult& scene) {
     std::uint64_t seen = 0;
     for (std::size_t bin = 1; bin < scene.pixels_by_layers.size(); ++bin) {
         seen += scene.pixels_by_layers[bin];
@@ -42,7 +42,7 @@ std::uint64_t median_layers(const SceneMeasure& scene) {
     return scene.longest;
 }
 
-std::string layers_text(const SceneMeasure& scene) {
+std::string layers_text(const SurveyResult& scene) {
     if (scene.fragments == 0) return "nothing transparent is visible";
     return counted(scene.fragments, "fragment") + " in " +
            percent(static_cast<double>(scene.nonempty_pixels) / static_cast<double>(scene.pixels)) +
@@ -50,37 +50,37 @@ std::string layers_text(const SceneMeasure& scene) {
            " at most, the deepest with " + grouped(scene.longest);
 }
 
-std::string light_text(const SceneMeasure& scene) {
+std::string light_text(const SurveyResult& scene) {
     std::string text;
-    for (const SceneMeasure::Cut& cut : scene.cuts)
+    for (const SurveyResult::Cut& cut : scene.cuts)
         if (cut.layers >= 2 && cut.layers < scene.longest)
             text += (text.empty() ? "" : ", ") + percent(cut.light_behind) + " behind " +
                     std::to_string(cut.layers) + (text.empty() ? " layers" : "");
     return text.empty() ? "" : "in any pixel at most " + text;
 }
 
-std::string untold_text(const SceneMeasure& scene) {
-    const auto& [of_float, of_24, of_16] = scene.pixels_untold;
+std::string unresolved_text(const SurveyResult& scene) {
+    const auto& [of_float, of_24, of_16] = scene.pixels_unresolved;
     if (of_float + of_24 + of_16 == 0) return "resolved in all pixels, even with depths of 16 bits";
     return "not resolved in " + counted(of_float, "pixel") + " with float depths, in " +
            grouped(of_24) + " with 24 bits, in " + grouped(of_16) + " with 16 bits";
 }
 
 std::string reason(const Candidate& candidate) {
-    switch (candidate.fate) {
-        case Fate::chosen:
+    switch (candidate.outcome) {
+        case Outcome::chosen:
             return "chosen";
-        case Fate::over_budget:
+        case Outcome::over_budget:
             return "over the budget";
-        case Fate::as_fast:
+        case Outcome::as_fast:
             return "as fast, not as plain";
-        case Fate::slower:
+        case Outcome::slower:
             return candidate.fastest_ms ? "slower" : "expected to be slower, not drawn";
-        case Fate::not_needed:
+        case Outcome::not_needed:
             return "not needed";
-        case Fate::failed:
+        case Outcome::failed:
             return "failed";
-        case Fate::not_reached:
+        case Outcome::not_reached:
             return "not reached in time";
     }
     return {};
@@ -99,10 +99,10 @@ std::string limit_text(const PictureError& error, const Budget& budget) {
 
 std::string other_order_text(const Choice& choice, const Budget& budget) {
     const bool counts = budget.strict, is_psnr = budget.kind == Budget::Kind::psnr;
-    return "in " + counted(choice.scene.pixels_untold[0], "undecided pixel") +
+    return "in " + counted(choice.scene.pixels_unresolved[0], "undecided pixel") +
            " float does not tell the order of layers: " +
            (counts ? "apart from these, " : "with the other order there, ") +
-           limit_text(counts ? choice.errors.told : choice.errors.all, budget) +
+           limit_text(counts ? choice.errors.resolved : choice.errors.all, budget) +
            (counts || is_psnr || choice.errors.undecided_pixels == 0
                 ? ""
                 : ", over " + budget.text() + " in " + grouped(choice.errors.undecided_pixels));
@@ -122,12 +122,12 @@ std::string quartiles_text(const Spread& times) {
 
 std::string chosen_text(const Choice& choice) {
     return short_text(choice.setting) + ": " + fixed(choice.times.median_ms, 2) + " ms (half of " +
-           counted(choice.turns, "frame") + " in " + quartiles_text(choice.times) + ")";
+           counted(choice.timed_frames, "frame") + " in " + quartiles_text(choice.times) + ")";
 }
 
 // Why this setting was chosen, where times alone do not decide.
 std::string plainest_text(const Choice& choice) {
-    const std::uint64_t others = choice.count(Fate::as_fast);
+    const std::uint64_t others = choice.count(Outcome::as_fast);
     if (others == 0) return {};
     return std::string(others == 1 ? "one other setting is"
                                    : grouped(others) + " other settings are") +
@@ -138,7 +138,7 @@ std::string search_text(const Choice& choice) {
     std::string text = counted(choice.candidates.size(), "setting") + ", " +
                        counted(choice.draws, "frame") + ", " + fixed(choice.took_ms / 1000, 1) +
                        " s";
-    if (const std::uint64_t left = choice.count(Fate::not_reached); left > 0)
+    if (const std::uint64_t left = choice.count(Outcome::not_reached); left > 0)
         text +=
             "; the time limit left out " + counted(left, "setting") + ": raise --search-seconds";
     return text;
@@ -158,8 +158,8 @@ std::vector<const Candidate*> shown_of(const std::vector<const Candidate*>& othe
     constexpr std::size_t most = 4;
     std::vector<const Candidate*> over, slower;
     for (const Candidate* other : others) {
-        const bool keeps = other->fate == Fate::as_fast || other->fate == Fate::slower;
-        if (other->fate == Fate::over_budget && other->error && over.size() < most)
+        const bool keeps = other->outcome == Outcome::as_fast || other->outcome == Outcome::slower;
+        if (other->outcome == Outcome::over_budget && other->error && over.size() < most)
             over.push_back(other);
         else if (keeps && other->fastest_ms && slower.size() < most)
             slower.push_back(other);
@@ -170,11 +170,11 @@ std::vector<const Candidate*> shown_of(const std::vector<const Candidate*>& othe
 
 std::string times_text(const Candidate& candidate) {
     if (candidate.times_chosen) return fixed(*candidate.times_chosen, 2) + " times";
-    return candidate.times_leader ? "about " + fixed(*candidate.times_leader, 2) + " times" : "-";
+    return candidate.times_fastest ? "about " + fixed(*candidate.times_fastest, 2) + " times" : "-";
 }
 
 // "12 not needed; 31 slower"
-std::string fates_text(const std::vector<const Candidate*>& candidates) {
+std::string outcomes_text(const std::vector<const Candidate*>& candidates) {
     std::vector<std::pair<std::string, int>> counts;
     for (const Candidate* candidate : candidates) {
         const std::string why = reason(*candidate);
@@ -202,16 +202,16 @@ void print_others(const Choice& choice, const Budget& budget, std::ostream& out)
         return std::ranges::find(shown, other) != shown.end();
     });
     if (!others.empty())
-        out << "    ... and " << others.size() << " more: " << fates_text(others)
+        out << "    ... and " << others.size() << " more: " << outcomes_text(others)
             << " (--json FILE has all)\n";
 }
 
 // ---- how the budget was kept
 
-std::string kept_text(const Budget& budget, const KeptBudget& kept) {
-    const std::string worst = limit_text(budget.counted(kept.worst()), budget);
-    return grouped(kept.checked()) + " of " + counted(kept.frames(), "frame") + " checked, " +
-           grouped(kept.chosen_again()) + " chosen again, " + grouped(kept.over().size()) +
+std::string record_text(const Budget& budget, const BudgetRecord& record) {
+    const std::string worst = limit_text(budget.counted(record.worst()), budget);
+    return grouped(record.checked()) + " of " + counted(record.frames(), "frame") + " checked, " +
+           grouped(record.chosen_again()) + " chosen again, " + grouped(record.over().size()) +
            " over the budget; the worst " +
            (budget.kind == Budget::Kind::psnr ? "has " : "is off by ") + worst;
 }
@@ -219,7 +219,7 @@ std::string kept_text(const Budget& budget, const KeptBudget& kept) {
 // Whether it is for the setting, or for what can be proven of any.
 std::string not_met_reason(const Choice& choice, const Budget& budget) {
     if (choice.met || budget.met_by(choice.scene.exact))
-        return budget.strict && budget.met_by(choice.errors.told)
+        return budget.strict && budget.met_by(choice.errors.resolved)
                    ? "--strict counts " + counted(choice.errors.undecided_pixels, "undecided pixel")
                    : "no setting meets the budget";
     return (budget.kind == Budget::Kind::psnr ? "no more than " : "no less than ") +
@@ -228,11 +228,11 @@ std::string not_met_reason(const Choice& choice, const Budget& budget) {
            "the picture may be better";
 }
 
-std::string not_met_text(const Choice& choice, const Budget& budget, const KeptBudget& kept) {
+std::string not_met_text(const Choice& choice, const Budget& budget, const BudgetRecord& record) {
     std::string text = not_met_reason(choice, budget);
-    if (kept.over().size() < kept.frames())
-        text += "; over it in " + counted(kept.over().size(), "frame") + ", first in frame " +
-                grouped(kept.first_over()) + " of " + grouped(kept.frames());
+    if (record.over().size() < record.frames())
+        text += "; over it in " + counted(record.over().size(), "frame") + ", first in frame " +
+                grouped(record.first_over()) + " of " + grouped(record.frames());
     return text;
 }
 
@@ -251,7 +251,7 @@ nlohmann::ordered_json json_of(const Spread& times) {
 
 }  // namespace
 
-void KeptBudget::add(const Keeper::Drawn& drawn, double time, const Budget& budget) {
+void BudgetRecord::add(const BudgetController::Drawn& drawn, double time, const Budget& budget) {
     ++frames_;
     if (drawn.changed) ++changed_;
     if (drawn.checked) ++checked_;
@@ -267,61 +267,63 @@ void KeptBudget::add(const Keeper::Drawn& drawn, double time, const Budget& budg
         worst_ = *drawn.errors;
 }
 
-std::string KeptBudget::verdict() const {
+std::string BudgetRecord::verdict() const {
     if (!met()) return "not met";
     if (undecided_pixels_ == 0) return "met";
     return "met except " + counted(undecided_pixels_, "undecided pixel");
 }
 
-void print(const Choice& choice, const Budget& budget, const KeptBudget& kept, std::ostream& out) {
+void print(const Choice& choice, const Budget& budget, const BudgetRecord& record,
+           std::ostream& out) {
     const auto line = [&out](const std::string& name, const std::string& what) {
         if (!what.empty())
             out << "  " << std::left << std::setw(18) << name << std::right << what << '\n';
     };
-    const SceneMeasure& scene = choice.scene;
+    const SurveyResult& scene = choice.scene;
     const bool is_psnr = budget.kind == Budget::Kind::psnr;
     line("budget", (is_psnr ? "PSNR of at least " : "errors of at most ") + budget.text() +
-                       (budget.strict ? ", strict: " : ": ") + kept.verdict());
+                       (budget.strict ? ", strict: " : ": ") + record.verdict());
     line("layers", layers_text(scene));
     if (scene.fragments > 0) {
         line("opacity", fixed(static_cast<double>(scene.least_alpha), 3) + " to " +
                             fixed(static_cast<double>(scene.greatest_alpha), 3));
         line("light that passes", light_text(scene));
-        line("order of layers", untold_text(scene));
+        line("order of layers", unresolved_text(scene));
     }
     line(choice.met ? "chosen" : "best setting", chosen_text(choice));
     line("", plainest_text(choice));
     line("error", limit_text(budget.counted(choice.errors), budget) + ", " + basis(choice.bounded));
-    if (scene.pixels_untold[0] > 0) line("", other_order_text(choice, budget));
+    if (scene.pixels_unresolved[0] > 0) line("", other_order_text(choice, budget));
     line("speed", speed_text(choice));
     line("search", search_text(choice));
     line("others", std::string(choice.met ? "time relative to the chosen one, and " : "") +
                        (is_psnr ? "PSNR at least" : "error at most"));
     print_others(choice, budget, out);
-    if (kept.changed() > 0) line("kept", kept_text(budget, kept));
-    if (!kept.met()) line("NOT MET", not_met_text(choice, budget, kept));
+    if (record.changed() > 0) line("kept", record_text(budget, record));
+    if (!record.met()) line("NOT MET", not_met_text(choice, budget, record));
 }
 
-nlohmann::ordered_json json_of(const Choice& choice, const Budget& budget, const KeptBudget& kept) {
-    constexpr const char* fates[] = {"chosen",     "over budget", "as fast",    "slower",
-                                     "not needed", "failed",      "not reached"};
+nlohmann::ordered_json json_of(const Choice& choice, const Budget& budget,
+                               const BudgetRecord& record) {
+    constexpr const char* outcomes[] = {"chosen",     "over budget", "as fast",    "slower",
+                                        "not needed", "failed",      "not reached"};
     nlohmann::ordered_json json;
     json["budget"] = budget.text();
     json["strict"] = budget.strict;
-    json["met"] = kept.met();
-    json["verdict"] = kept.verdict();
-    json["undecided_pixels"] = kept.undecided_pixels();
+    json["met"] = record.met();
+    json["verdict"] = record.verdict();
+    json["undecided_pixels"] = record.undecided_pixels();
     json["setting"] = text(choice.setting);
-    json["error"] = json_of(choice.errors.told);
+    json["error"] = json_of(choice.errors.resolved);
     json["error_with_any_order"] = json_of(choice.errors.all);
     json["bounded"] = choice.bounded;
     json.update(json_of(choice.times));
-    json["turns"] = choice.turns;
+    json["turns"] = choice.timed_frames;
     json["exact_times"] = nullptr;
     if (choice.exact_times) json["exact_times"] = *choice.exact_times;
     json["draws"] = choice.draws;
     json["took_ms"] = choice.took_ms;
-    json["not_reached"] = choice.count(Fate::not_reached);
+    json["not_reached"] = choice.count(Outcome::not_reached);
     json["scene"] = {{"pixels", choice.scene.pixels},
                      {"fragments", choice.scene.fragments},
                      {"nonempty_pixels", choice.scene.nonempty_pixels},
@@ -329,24 +331,24 @@ nlohmann::ordered_json json_of(const Choice& choice, const Budget& budget, const
                      {"pixels_by_layers", choice.scene.pixels_by_layers},
                      {"least_alpha", choice.scene.least_alpha},
                      {"greatest_alpha", choice.scene.greatest_alpha},
-                     {"pixels_untold", choice.scene.pixels_untold},
+                     {"pixels_untold", choice.scene.pixels_unresolved},
                      {"exact", json_of(choice.scene.exact)}};
     json["candidates"] = nlohmann::ordered_json::array();
     for (const Candidate& candidate : choice.candidates) {
         nlohmann::ordered_json entry{{"setting", text(candidate.setting)},
-                                     {"fate", fates[static_cast<int>(candidate.fate)]}};
+                                     {"fate", outcomes[static_cast<int>(candidate.outcome)]}};
         if (candidate.error) entry["error"] = json_of(*candidate.error);
         if (candidate.fastest_ms) entry["fastest_ms"] = *candidate.fastest_ms;
-        if (candidate.times_leader) entry["times_leader"] = *candidate.times_leader;
+        if (candidate.times_fastest) entry["times_leader"] = *candidate.times_fastest;
         if (candidate.times) entry.update(json_of(*candidate.times));
         if (candidate.times_chosen) entry["times_chosen"] = *candidate.times_chosen;
         if (!candidate.failure.empty()) entry["failure"] = candidate.failure;
         json["candidates"].push_back(entry);
     }
     json["frames"] = {
-        {"drawn", kept.frames()},    {"changed", kept.changed()},
-        {"checked", kept.checked()}, {"chosen_again", kept.chosen_again()},
-        {"over_at", kept.over()},    {"worst", json_of(budget.counted(kept.worst()))}};
+        {"drawn", record.frames()},    {"changed", record.changed()},
+        {"checked", record.checked()}, {"chosen_again", record.chosen_again()},
+        {"over_at", record.over()},    {"worst", json_of(budget.counted(record.worst()))}};
     return json;
 }
 

@@ -8,14 +8,14 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "budget/budget.hpp"
-#include "budget/keeper.hpp"
+#include "budget/budget_controller.hpp"
 
 namespace oit {
 
-/// How a budget was kept over the frames of a run.
-class KeptBudget {
+/// Whether each frame of a run was within the budget.
+class BudgetRecord {
 public:
-    void add(const Keeper::Drawn& drawn, double time, const Budget& budget);
+    void add(const BudgetController::Drawn& drawn, double time, const Budget& budget);
 
     /// No frame that was checked is over the budget; undecided pixels count where it is strict.
     [[nodiscard]] bool met() const { return over_.empty(); }
@@ -44,10 +44,11 @@ private:
 };
 
 /// What was chosen, and why: the end of a screen for people.
-void print(const Choice& choice, const Budget& budget, const KeptBudget& kept, std::ostream& out);
+void print(const Choice& choice, const Budget& budget, const BudgetRecord& record,
+           std::ostream& out);
 
 /// The same, and all candidates.
 [[nodiscard]] nlohmann::ordered_json json_of(const Choice& choice, const Budget& budget,
-                                             const KeptBudget& kept);
+                                             const BudgetRecord& record);
 
 }  // namespace oit

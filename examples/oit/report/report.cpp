@@ -118,13 +118,11 @@ nlohmann::ordered_json meshes_json(const Report& report) {
     return meshes;
 }
 
-// Where the pictures are.
+// Where the pictures are, as on the command line.
 void print_files(const Options& options, const Line& line) {
     const auto file = [&](const std::string& name, const std::filesystem::path& path) {
         if (path.empty()) return;
-        line(name) << (support::is_standard_output(path)
-                           ? "on stdout"
-                           : support::text_of(std::filesystem::absolute(path).lexically_normal()))
+        line(name) << (support::is_standard_output(path) ? "on stdout" : support::text_of(path))
                    << '\n';
     };
     file(options.out.has_number() ? "pictures" : "picture",
@@ -194,7 +192,7 @@ void print(const Report& report, std::ostream& out) {
     print_times(report, line);
     // A choice has a narrower bound of what the early end leaves out.
     if (report.choice)
-        print(*report.choice, *options.budget, report.kept, out);
+        print(*report.choice, *options.budget, report.record, out);
     else if (options.quality.epsilon > 0)
         line("early end") << early_end_text(report) << '\n';
     if (report.pixels_nan > 0)
@@ -247,7 +245,7 @@ nlohmann::ordered_json to_json(const Report& report) {
     if (report.choice) {
         json["check_every"] = options.check_every;
         json["search_seconds"] = options.search_seconds;
-        json["budget"] = json_of(*report.choice, *options.budget, report.kept);
+        json["budget"] = json_of(*report.choice, *options.budget, report.record);
     }
     for (const char* name : compared) json[name] = nullptr;
     json["reference"] = nullptr;

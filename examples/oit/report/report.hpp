@@ -16,7 +16,7 @@
 
 namespace oit {
 
-/// The figures of a run.
+/// What a run measured.
 struct Report {
     Options options;
     std::string device;
@@ -39,7 +39,7 @@ struct Report {
     std::optional<Comparison>
         nearest_comparison;        ///< with Quality::layers, where there is a number
     std::optional<Choice> choice;  ///< for a budget
-    KeptBudget kept;
+    BudgetRecord record;
 };
 
 /// One screen for people.

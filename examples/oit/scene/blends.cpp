@@ -60,17 +60,18 @@ public:
         add_bottle({0.02, -0.16}, 0.16, {0.01F, 0.25F, 0.03F});
         add_filters();
         for (const double x : {0.38, 0.62}) add_candle({x, 0.02});
-        scene_.look = studio_look(static_cast<float>(tray_height) - 0.05F);
+        scene_.lighting = studio_lighting(static_cast<float>(tray_height) - 0.05F);
         // A bright background: filters and media only take light away.
-        std::ranges::copy(Tint{0.42F, 0.47F, 0.55F}, scene_.look.background_top);
-        std::ranges::copy(Tint{0.78F, 0.76F, 0.72F}, scene_.look.background_bottom);
+        std::ranges::copy(Tint{0.42F, 0.47F, 0.55F}, scene_.lighting.background_top);
+        std::ranges::copy(Tint{0.78F, 0.76F, 0.72F}, scene_.lighting.background_bottom);
         return std::move(scene_);
     }
 
 private:
     void add(support::Mesh mesh, const Material& material, const glm::dmat4& place) {
-        scene_.instances.push_back(
-            {.model = scene_.models.size(), .material = scene_.materials.size(), .place = place});
+        scene_.instances.push_back({.model = scene_.models.size(),
+                                    .material = scene_.materials.size(),
+                                    .to_world = place});
         scene_.models.push_back({.mesh = std::move(mesh)});
         scene_.materials.push_back(material);
     }

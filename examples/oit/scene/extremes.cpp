@@ -32,7 +32,7 @@ public:
     // The last mesh again, elsewhere.
     void repeat(const glm::dvec3& by) {
         Instance instance = scene_.instances.back();
-        instance.place[3] = glm::dvec4(by, 1);
+        instance.to_world[3] = glm::dvec4(by, 1);
         scene_.instances.push_back(instance);
     }
     Scene take() { return std::move(scene_); }

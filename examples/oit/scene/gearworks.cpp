@@ -67,7 +67,7 @@ public:
         add_bearings();
         add_case();
         add_springs();
-        scene_.look = studio_look(-1.0F);
+        scene_.lighting = studio_lighting(-1.0F);
         return std::move(scene_);
     }
 
@@ -84,7 +84,7 @@ private:
              double turns_per_second = 0) {
         scene_.instances.push_back({.model = model,
                                     .material = material,
-                                    .place = place,
+                                    .to_world = place,
                                     .turns_per_second = turns_per_second});
     }
 

@@ -105,22 +105,23 @@ void add_mesh(Scene& scene, support::Mesh mesh, float alpha, std::optional<float
         for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
             if (has_opacities(mesh, mesh.triangles[t])) fades[index_of(t)] = 1;
 
-    std::map<LookKey, std::pair<Material, std::vector<Triangle>>> looks;
+    std::map<LookKey, std::pair<Material, std::vector<Triangle>>> groups;
     std::vector<std::pair<Material, std::vector<Triangle>>*> look_of;
     for (std::size_t i = 0; i < said.size(); ++i) {
         const Material material =
             material_of(said[i], !mesh.colours.empty(), fades[i] != 0, alpha, own_alpha);
-        look_of.push_back(&looks[key_of(material)]);
+        look_of.push_back(&groups[key_of(material)]);
         look_of.back()->first = material;
     }
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
         look_of[index_of(t)]->second.push_back(mesh.triangles[t]);
-    std::erase_if(looks, [](const auto& look) { return look.second.second.empty(); });
-    if (looks.size() == 1) {
-        add(std::move(mesh), looks.begin()->second.first);
+    std::erase_if(groups, [](const auto& lighting) { return lighting.second.second.empty(); });
+    if (groups.size() == 1) {
+        add(std::move(mesh), groups.begin()->second.first);
         return;
     }
-    for (auto& [key, look] : looks) add(part_of(mesh, std::move(look.second)), look.first);
+    for (auto& [key, lighting] : groups)
+        add(part_of(mesh, std::move(lighting.second)), lighting.first);
 }
 
 }  // namespace oit

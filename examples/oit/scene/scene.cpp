@@ -14,12 +14,12 @@
 namespace oit {
 namespace {
 
-support::Mesh floor_mesh(const Look& look) {
-    const float side = 2 * look.floor_fade_end;
+support::Mesh floor_mesh(const Lighting& lighting) {
+    const float side = 2 * lighting.floor_fade_end;
     support::Mesh floor;
     for (const float z : {-side, side})
         for (const float x : {-side, side}) {
-            floor.positions.emplace_back(x, look.floor_height, z);
+            floor.positions.emplace_back(x, lighting.floor_height, z);
             floor.normals.emplace_back(0.0F, 1.0F, 0.0F);
         }
     floor.triangles = {{0, 2, 3}, {0, 3, 1}};
@@ -43,7 +43,7 @@ Box box_around(const Scene& scene) {
     for (const Instance& instance : scene.instances)
         for (const glm::vec3& p : scene.models.at(instance.model).mesh.positions)
             if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z))
-                box.add(instance.place * glm::dvec4(p, 1));
+                box.add(instance.to_world * glm::dvec4(p, 1));
     return box;
 }
 
@@ -57,13 +57,13 @@ float floor_height_under(const Scene& scene) {
 }
 
 // An ellipse around what stands on the floor, and somewhat larger.
-void fit_shadow(Look& look, const Box& box) {
+void fit_shadow(Lighting& lighting, const Box& box) {
     constexpr double wider = 1.25, least = 0.05;
     if (box.is_empty()) return;
     const auto fit = [&](int shadow_axis, int axis) {
-        look.floor_shadow_centre[shadow_axis] =
+        lighting.floor_shadow_centre[shadow_axis] =
             static_cast<cl_float>((box.low[axis] + box.high[axis]) / 2);
-        look.floor_shadow_radius[shadow_axis] =
+        lighting.floor_shadow_radius[shadow_axis] =
             static_cast<cl_float>(std::max(least, wider * (box.high[axis] - box.low[axis]) / 2));
     };
     fit(0, 0);
@@ -79,10 +79,10 @@ std::uint64_t Scene::triangles() const {
     return sum;
 }
 
-glm::dmat4 place_at(const Instance& instance, double time) {
-    if (instance.turns_per_second == 0) return instance.place;
+glm::dmat4 transform_at(const Instance& instance, double time) {
+    if (instance.turns_per_second == 0) return instance.to_world;
     const double angle = 2 * std::numbers::pi * instance.turns_per_second * time;
-    return glm::rotate(instance.place, angle, glm::dvec3(0, 0, 1));
+    return glm::rotate(instance.to_world, angle, glm::dvec3(0, 0, 1));
 }
 
 Material glass(float alpha) {
@@ -95,9 +95,9 @@ Material glass(float alpha) {
 }
 
 void add_floor(Scene& scene) {
-    fit_shadow(scene.look, box_around(scene));
+    fit_shadow(scene.lighting, box_around(scene));
     scene.instances.push_back({.model = scene.models.size(), .material = scene.materials.size()});
-    scene.models.push_back({.mesh = floor_mesh(scene.look)});
+    scene.models.push_back({.mesh = floor_mesh(scene.lighting)});
     Material material = glass(1);
     material.blend = static_cast<cl_uint>(Blend::opaque);
     material.paint = static_cast<cl_uint>(Paint::floor);
@@ -108,7 +108,7 @@ Scene scene_of(std::vector<PlacedMesh> meshes) {
     Scene scene;
     for (PlacedMesh& placed : meshes)
         add_mesh(scene, std::move(placed.mesh), placed.alpha, placed.own_alpha);
-    scene.look = studio_look(floor_height_under(scene));
+    scene.lighting = studio_lighting(floor_height_under(scene));
     return scene;
 }
 

@@ -9,7 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "mesh.hpp"
-#include "scene/look.hpp"
+#include "scene/lighting.hpp"
 #include "scene/material.hpp"
 
 namespace oit {
@@ -32,11 +32,11 @@ struct SceneMesh {
     std::vector<std::string> notes = {};  ///< of the reader
 };
 
-/// A model at a place, turning about its own z axis. Places do not mirror.
+/// A placed model that turns about its own z axis. `to_world` does not mirror.
 struct Instance {
     std::size_t model = 0;
     std::size_t material = 0;
-    glm::dmat4 place{1.0};  ///< from the model to the world
+    glm::dmat4 to_world{1.0};
     double turns_per_second = 0;
 };
 
@@ -47,7 +47,7 @@ struct Scene {
     std::vector<Material> materials = {};
     std::vector<Instance> instances = {};
     std::vector<SceneMesh> meshes = {};  ///< none where the scene is computed
-    Look look = studio_look(-1);
+    Lighting lighting = studio_lighting(-1);
 
     [[nodiscard]] const Material& material_of(const Instance& instance) const {
         return materials.at(instance.material);
@@ -60,12 +60,12 @@ struct Scene {
 };
 
 /// Where an instance is at a time in seconds.
-[[nodiscard]] glm::dmat4 place_at(const Instance& instance, double time);
+[[nodiscard]] glm::dmat4 transform_at(const Instance& instance, double time);
 
 /// The surface of the example's pictures.
 [[nodiscard]] Material glass(float alpha);
 
-/// Adds an opaque floor of two large triangles at look.floor_height. Its shadow takes the size of
+/// Adds an opaque floor of two large triangles at lighting.floor_height. Its shadow takes the size of
 /// what stands on it.
 void add_floor(Scene& scene);
 

@@ -118,7 +118,7 @@ void fit(Scene& scene) {
     for (Model& model : scene.models)
         for (glm::vec3& p : model.mesh.positions)
             p = glm::vec3(scale * (dvec3(p) - 0.5 * (low + high)));
-    scene.look = studio_look(static_cast<float>(-0.51 * scale * (high - low).y));
+    scene.lighting = studio_lighting(static_cast<float>(-0.51 * scale * (high - low).y));
 }
 
 Scene make(float alpha) {

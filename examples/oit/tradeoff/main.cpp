@@ -10,7 +10,7 @@
 #include "progress.hpp"
 #include "report/frame_json.hpp"
 #include "report/number_text.hpp"
-#include "tradeoff/figures.hpp"
+#include "tradeoff/metrics.hpp"
 #include "tradeoff/page.hpp"
 #include "tradeoff/sweep.hpp"
 #include "tradeoff/tradeoff_options.hpp"
@@ -59,7 +59,7 @@ void run(const oit::TradeoffOptions& options) {
                                   " cannot draw this: " + sweep.left_out.front().reason);
     std::size_t done = 0;
     support::Progress more_rounds("more rounds");
-    sweep.measurements = oit::measure_by_turns(
+    sweep.measurements = oit::measure_interleaved(
         device, frame, reference, settings, options.frames,
         [&](oit::Measurement& measurement) {
             if (pictures && measurement.drawn())
@@ -84,7 +84,7 @@ void run(const oit::TradeoffOptions& options) {
 int main(int count, char** arguments) {
     return support::run_program("cellist-tradeoff", [&] {
         const oit::TradeoffOptions options = oit::parse_tradeoff_options(count, arguments);
-        if (options.help)
+        if (!options.help_text.empty())
             std::cout << options.help_text;
         else
             run(options);

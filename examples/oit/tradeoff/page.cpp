@@ -6,7 +6,7 @@
 #include "image.hpp"
 #include "report/frame_json.hpp"
 #include "report/picture.hpp"
-#include "tradeoff/figures.hpp"
+#include "tradeoff/metrics.hpp"
 #include "tradeoff_kernels.hpp"
 
 namespace oit {
@@ -47,22 +47,22 @@ std::size_t Pictures::keep(std::span<const std::uint8_t> bytes) {
 }
 
 std::string to_html(const Sweep& sweep, const Pictures& pictures) {
-    ordered_json figures = to_json(sweep);
+    ordered_json metrics = to_json(sweep);
     for (std::size_t i = 0; i < sweep.measurements.size(); ++i) {
         const Measurement& measurement = sweep.measurements[i];
         if (!measurement.drawn()) continue;
         const auto [picture, difference] = pictures.of(measurement.setting);
-        figures["settings"][i]["picture"] = picture;
-        figures["settings"][i]["difference"] = difference;
+        metrics["settings"][i]["picture"] = picture;
+        metrics["settings"][i]["difference"] = difference;
     }
-    figures["pictures"] = pictures.uris();
-    figures["difference_factor"] = difference_factor;
-    figures["psnr_enough"] = psnr_enough;
+    metrics["pictures"] = pictures.uris();
+    metrics["difference_factor"] = difference_factor;
+    metrics["psnr_enough"] = psnr_enough;
     using namespace tradeoff::kernels;
     std::string page(page_html);
     // From the end to the beginning, so that no mark is sought in what was put in.
     replace(page, "{{script}}", std::string(text_js).append(plot_js).append(page_js));
-    replace(page, "{{figures}}", script_text(figures));
+    replace(page, "{{metrics}}", script_text(metrics));
     replace(page, "{{style}}", std::string(page_css));
     replace(page, "{{title}}", escaped(sweep.scene_name()));
     return page;

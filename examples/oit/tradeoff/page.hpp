@@ -39,7 +39,7 @@ private:
     std::map<std::string, std::pair<std::size_t, std::size_t>> pictures_;
 };
 
-/// A page that needs no other file: figures, plot and pictures of a sweep.
+/// A page that needs no other file: metrics, plot and pictures of a sweep.
 [[nodiscard]] std::string to_html(const Sweep& sweep, const Pictures& pictures);
 
 /// A text as HTML shows it.

@@ -61,9 +61,9 @@ fillTable(byId("settings"), drawn, [
 const range = (least, most) => `${least.toFixed(2)} to ${most.toFixed(2)}`;
 const untold = row => row.told_apart ? "" : "not significant";
 
-const layers = figures.fewer_layers;
+const layers = metrics.fewer_layers;
 byId("layers-part").hidden = layers.length === 0;
-byId("layers-note").textContent = `The nearest layers in linked lists against all ${figures.most_layers}.`;
+byId("layers-note").textContent = `The nearest layers in linked lists against all ${metrics.most_layers}.`;
 fillTable(byId("layers"), layers, [
     ["layers", row => row.layers, row => row.layers],
     ["time, ms", row => column(row.ms), row => row.ms],
@@ -74,8 +74,8 @@ fillTable(byId("layers"), layers, [
     ["SSIM", row => row.ssim.toFixed(5), row => row.ssim],
 ]);
 
-byId("exact-part").hidden = figures.exact_methods.length < 2;
-fillTable(byId("exact"), figures.exact_methods, [
+byId("exact-part").hidden = metrics.exact_methods.length < 2;
+fillTable(byId("exact"), metrics.exact_methods, [
     ["method", row => row.method],
     ["time, ms", row => column(row.ms), row => row.ms],
     ["times as long as linked", row => row.times_linked.toFixed(2), row => row.times_linked],
@@ -85,8 +85,8 @@ fillTable(byId("exact"), figures.exact_methods, [
 ]);
 
 const leftOut = [
-    ...figures.left_out.map(({method, reason}) => ({what: method, reason})),
-    ...figures.settings.filter(setting => setting.failure !== undefined)
+    ...metrics.left_out.map(({method, reason}) => ({what: method, reason})),
+    ...metrics.settings.filter(setting => setting.failure !== undefined)
         .map(({options, failure}) => ({what: options, reason: failure})),
 ];
 byId("left-out-part").hidden = leftOut.length === 0;
@@ -117,7 +117,7 @@ function show() {
         const picture = byId("picture-" + which);
         byId(which).value = shown[which];
         // The reference differs from itself in nothing: its picture is black.
-        picture.src = figures.pictures[shown.differences && setting.difference !== undefined ? setting.difference : setting.picture];
+        picture.src = metrics.pictures[shown.differences && setting.difference !== undefined ? setting.difference : setting.picture];
         picture.style.filter = shown.differences && setting.difference === undefined ? "brightness(0)" : "";
         picture.alt = (shown.differences ? "difference of " : "") + titleOf(which);
         byId("name-" + which).textContent = `${which.toUpperCase()}: ${titleOf(which)}`;
@@ -158,21 +158,21 @@ byId("stage").addEventListener("pointermove", event => { if (event.buttons === 1
 byId("at").addEventListener("input", () => { shown.at = Number(byId("at").value); show(); });
 byId("swap").addEventListener("click", () => { [shown.a, shown.b] = [shown.b, shown.a]; show(); });
 byId("differences").addEventListener("change", () => { shown.differences = byId("differences").checked; show(); });
-byId("differences-label").textContent = `differences × ${figures.difference_factor}`;
+byId("differences-label").textContent = `differences × ${metrics.difference_factor}`;
 window.addEventListener("hashchange", readAddress);
 readAddress();
 
 // --- all pictures
 
 byId("pictures-note").textContent =
-    `Each setting, and its difference from the reference × ${figures.difference_factor}, as sRGB values.`;
+    `Each setting, and its difference from the reference × ${metrics.difference_factor}, as sRGB values.`;
 for (const setting of [reference, ...drawn]) {
     const name = setting === reference ? "reference in double precision" : nameOf(setting);
     const figure = element(byId("pictures"), "figure");
     const pair = element(figure, "div", {class: "pair"});
-    element(pair, "img", {src: figures.pictures[setting.picture], alt: name, loading: "lazy"});
+    element(pair, "img", {src: metrics.pictures[setting.picture], alt: name, loading: "lazy"});
     if (setting !== reference)
-        element(pair, "img", {src: figures.pictures[setting.difference], alt: "difference of " + name, loading: "lazy"});
+        element(pair, "img", {src: metrics.pictures[setting.difference], alt: "difference of " + name, loading: "lazy"});
     element(figure, "figcaption", {},
             setting === reference ? name : `${name}: ${digits(setting.ms)} ms, ${decibels(setting.psnr_db)} dB`);
 }

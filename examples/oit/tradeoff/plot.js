@@ -9,7 +9,7 @@ const colourOf = method => {
     const [kind, names, colours] = kinds.find(([, names]) => names.includes(method));
     return `var(--${kind}-${names.indexOf(method) % colours})`;
 };
-const cappedPsnr = setting => Math.min(setting.psnr_db ?? Infinity, figures.psnr_enough);
+const cappedPsnr = setting => Math.min(setting.psnr_db ?? Infinity, metrics.psnr_enough);
 
 // A disc for exact methods, a triangle where layers are left out, a diamond for approximations.
 function shapeOf(setting, x, y, r) {
@@ -26,7 +26,7 @@ const axes = {
          most: setting => setting.upper_quartile_ms},
     bytes: {title: "memory of the method, MB", of: setting => setting.bytes / 1e6},
 };
-const isEnough = setting => cappedPsnr(setting) >= figures.psnr_enough;
+const isEnough = setting => cappedPsnr(setting) >= metrics.psnr_enough;
 
 // Which settings nothing else beats, in what the axis shows.
 function frontOf(settings) {
@@ -51,9 +51,9 @@ function drawPlot() {
     const left = 104, right = width - 56, top = 26, bottom = height - 42, plotTop = top + strip + 10;
     const ends = visible.flatMap(setting => [(axis.least ?? axis.of)(setting), (axis.most ?? axis.of)(setting)]);
     const least = Math.min(...ends) / 1.25, most = Math.max(...ends) * 1.25;
-    const floor = Math.floor((Math.min(figures.psnr_enough - 20, ...visible.map(cappedPsnr)) - 3) / 10) * 10;
+    const floor = Math.floor((Math.min(metrics.psnr_enough - 20, ...visible.map(cappedPsnr)) - 3) / 10) * 10;
     const x = value => left + (right - left) * Math.log(value / least) / Math.log(most / least);
-    const y = psnr => bottom - (bottom - plotTop) * (psnr - floor) / (figures.psnr_enough - floor);
+    const y = psnr => bottom - (bottom - plotTop) * (psnr - floor) / (metrics.psnr_enough - floor);
     // Neighbours of a row are a little above and below its middle, so that they can be told apart.
     const inRow = new Map();
     for (const method of rows)
@@ -75,17 +75,17 @@ function drawPlot() {
             element(svg, "line", {class: "grid", x1: x(ms), x2: x(ms), y1: strip > 0 ? top : plotTop, y2: bottom});
             element(svg, "text", {x: x(ms), y: bottom + 16, "text-anchor": "middle"}, digits(ms));
         }
-    for (let psnr = floor; psnr < figures.psnr_enough; psnr += 10) {
+    for (let psnr = floor; psnr < metrics.psnr_enough; psnr += 10) {
         element(svg, "line", {class: "grid", x1: left, x2: right, y1: y(psnr), y2: y(psnr)});
         element(svg, "text", {x: left - 6, y: y(psnr) + 4, "text-anchor": "end"}, psnr);
     }
     for (let power = 2; power >= -3; --power) {
         const psnr = 20 * Math.log10(255) - 20 * power;
-        if (psnr > floor && psnr < figures.psnr_enough)
+        if (psnr > floor && psnr < metrics.psnr_enough)
             element(svg, "text", {x: right + 6, y: y(psnr) + 4}, digits(10 ** power));
     }
     element(svg, "text", {x: 2, y: 12},
-            strip > 0 ? `strip: ${figures.psnr_enough} dB and more; below: PSNR, dB` : "PSNR, dB");
+            strip > 0 ? `strip: ${metrics.psnr_enough} dB and more; below: PSNR, dB` : "PSNR, dB");
     element(svg, "text", {x: width - 2, y: plotTop - 2, "text-anchor": "end"}, "RMS error, /255");
     element(svg, "text", {x: (left + right) / 2, y: height - 6, "text-anchor": "middle"}, axis.title);
 
@@ -168,7 +168,7 @@ for (const method of methods) {
 byId("plot-note").textContent =
     "Better is up and to the left. A disc is an exact method, a triangle its nearest layers or an early end, and a diamond an " +
     "approximation. A bar has half of a setting's frames. Settings with overlapping bars are equally fast. The line and the " +
-    "outlined marks are the Pareto front. Point at a mark for its figures. Select it to see its picture as B. Select a " +
+    "outlined marks are the Pareto front. Point at a mark for its metrics. Select it to see its picture as B. Select a " +
     "method's name to hide it.";
 for (const choice of document.getElementsByName("axis"))
     choice.addEventListener("change", () => {
@@ -177,19 +177,19 @@ for (const choice of document.getElementsByName("axis"))
         drawPlot();
     });
 byId("front-note").textContent =
-    `Marked settings: no other setting is both as fast and as accurate. Times count as equal within ${percent(figures.equally_fast - 1)}, ` +
-    `or if the spreads overlap. Errors count as equal above ${figures.psnr_enough} dB, which is less than a step of 16 bits. ` +
+    `Marked settings: no other setting is both as fast and as accurate. Times count as equal within ${percent(metrics.equally_fast - 1)}, ` +
+    `or if the spreads overlap. Errors count as equal above ${metrics.psnr_enough} dB, which is less than a step of 16 bits. ` +
     "±: half of the frames differ from the median by no more.";
-byId("uncertain").hidden = figures.typical_spread <= figures.equally_fast - 1;
+byId("uncertain").hidden = metrics.typical_spread <= metrics.equally_fast - 1;
 byId("uncertain").textContent =
-    `The times are uncertain: half of the settings have a spread of ${percent(figures.typical_spread)} or more. Ignore smaller ` +
+    `The times are uncertain: half of the settings have a spread of ${percent(metrics.typical_spread)} or more. Ignore smaller ` +
     "differences. Measure again when the machine is idle, or with more --frames.";
 window.addEventListener("resize", drawPlot);
 drawPlot();
 
 // --- layers
 
-const bins = figures.pixels_by_layers ?? [];
+const bins = metrics.pixels_by_layers ?? [];
 byId("histogram-part").hidden = bins.length === 0;
 
 // Pixels without layers are said and not drawn: they would dwarf all others.
@@ -201,7 +201,7 @@ function drawHistogram() {
     svg.setAttribute("height", height);
     const shown = bins.slice(1), most = Math.max(1, ...shown), step = Math.min(90, width / Math.max(1, shown.length));
     shown.forEach((pixels, i) => {
-        const least = 2 ** i, end = Math.min(2 ** (i + 1) - 1, figures.most_layers), tall = (bottom - top) * pixels / most;
+        const least = 2 ** i, end = Math.min(2 ** (i + 1) - 1, metrics.most_layers), tall = (bottom - top) * pixels / most;
         element(svg, "rect", {class: "bar", x: i * step + 2, width: step - 4, y: bottom - tall, height: tall});
         element(svg, "text", {x: (i + 0.5) * step, y: bottom - tall - 5, "text-anchor": "middle"}, compact(pixels));
         element(svg, "text", {x: (i + 0.5) * step, y: bottom + 16, "text-anchor": "middle"},

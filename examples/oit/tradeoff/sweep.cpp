@@ -19,8 +19,9 @@ double accuracy(const Measurement& measurement) {
 }
 
 bool beats(const Measurement& a, const Measurement& b) {
-    return a.drawn() && !told_slower(a.spread_ms(), b.spread_ms()) && accuracy(a) >= accuracy(b) &&
-           (told_slower(b.spread_ms(), a.spread_ms()) || accuracy(a) > accuracy(b));
+    return a.drawn() && !measurably_slower(a.spread_ms(), b.spread_ms()) &&
+           accuracy(a) >= accuracy(b) &&
+           (measurably_slower(b.spread_ms(), a.spread_ms()) || accuracy(a) > accuracy(b));
 }
 
 constexpr std::uint32_t rounds = 3;
@@ -40,7 +41,8 @@ bool gives_nothing_up(const Measurement& measurement) {
 Relation relation(const Measurement& of, const Measurement& a, const Measurement& b) {
     const Spread x = a.spread_ms(), y = b.spread_ms();
     return {&of, y.median_ms / x.median_ms, y.lower_quartile_ms / x.upper_quartile_ms,
-            y.upper_quartile_ms / x.lower_quartile_ms, told_slower(x, y) || told_slower(y, x)};
+            y.upper_quartile_ms / x.lower_quartile_ms,
+            measurably_slower(x, y) || measurably_slower(y, x)};
 }
 
 const Measurement* all_layers(const Sweep& sweep) {
@@ -67,17 +69,18 @@ std::vector<LeftOut> left_out(const Frame& frame, std::span<const std::string_vi
     std::vector<LeftOut> result;
     for (const MethodInfo& method : methods()) {
         if (!is_named(method.name, names)) continue;
-        const std::string reason = method.refusal(frame, needs_of(frame));
+        const std::string reason = method.refusal(frame, features_of(frame));
         if (!reason.empty()) result.push_back({method.name, reason});
     }
     return result;
 }
 
-std::vector<Measurement> measure_by_turns(const cellist::Device& device, const Frame& frame,
-                                          const Reference& reference,
-                                          std::span<const Setting> settings, std::uint32_t frames,
-                                          const std::function<void(Measurement&)>& measured,
-                                          const std::function<void(double)>& progress) {
+std::vector<Measurement> measure_interleaved(const cellist::Device& device, const Frame& frame,
+                                             const Reference& reference,
+                                             std::span<const Setting> settings,
+                                             std::uint32_t frames,
+                                             const std::function<void(Measurement&)>& measured,
+                                             const std::function<void(double)>& progress) {
     std::vector<Measurement> measurements;
     for (const Setting& setting : settings) {
         measurements.push_back(measure(device, frame, setting, reference, frames_in(0, frames)));

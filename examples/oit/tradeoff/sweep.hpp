@@ -48,11 +48,11 @@ struct Sweep {
 /// bits, and what is left is rounding.
 inline constexpr double psnr_enough = 96;
 
-/// Measures the settings by turns: a part of the frames of each, and then the next part, so that
+/// Measures the settings interleaved: a part of the frames of each, and then the next part, so that
 /// what slows the machine for a while does not fall to a few of them. `measured` gets what the first
 /// round has found of a setting, and the image; `progress` the finished part of the other rounds.
 /// Blocks.
-[[nodiscard]] std::vector<Measurement> measure_by_turns(
+[[nodiscard]] std::vector<Measurement> measure_interleaved(
     const cellist::Device& device, const Frame& frame, const Reference& reference,
     std::span<const Setting> settings, std::uint32_t frames,
     const std::function<void(Measurement&)>& measured, const std::function<void(double)>& progress);
@@ -65,7 +65,7 @@ inline constexpr double psnr_enough = 96;
 [[nodiscard]] std::vector<std::uint64_t> pixels_by_layers(const Reference& reference);
 
 /// Which measurements no other one beats: none is as fast and as accurate, and better in one of these.
-/// What is slower is slower by told_slower().
+/// What is slower is slower by measurably_slower().
 [[nodiscard]] std::vector<bool> pareto_front(std::span<const Measurement> measurements);
 
 /// A measurement, and how many times as long another one takes: by the medians, and at least and at
@@ -74,7 +74,7 @@ struct Relation {
     const Measurement* measurement;
     double factor;
     double least, most;
-    bool told;  ///< whether the times tell which of the two is slower
+    bool is_distinct;  ///< whether the times tell which of the two is slower
 };
 
 /// The K nearest layers in lists against all of them, K ascending: the factor is the speed-up.

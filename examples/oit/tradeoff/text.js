@@ -1,9 +1,9 @@
 // The script of the report of cellist-tradeoff: text.js, plot.js and page.js are one script, in this order. Here:
-// the figures, and how they read as text.
+// the metrics, and how they read as text.
 "use strict";
 const byId = id => document.getElementById(id);
-const figures = JSON.parse(byId("figures").textContent);
-const drawn = figures.settings.filter(setting => setting.failure === undefined);
+const metrics = JSON.parse(byId("metrics").textContent);
+const drawn = metrics.settings.filter(setting => setting.failure === undefined);
 
 // --- text
 
@@ -34,19 +34,19 @@ function element(parent, tag, attributes = {}, text = undefined) {
     return parent.appendChild(made);
 }
 
-byId("scene").textContent = figures.scene;
+byId("scene").textContent = metrics.scene;
 byId("about").textContent =
-    `${figures.width}×${figures.height}${figures.eyes > 1 ? ", two eyes" : ""}, ${figures.samples} ` +
-    `${figures.samples > 1 ? "samples" : "sample"} a pixel, view ${figures.view.map(angle => digits(angle)).join("°, ")}°, opacity ` +
-    `${digits(figures.alpha)}. ${figures.triangles.toLocaleString("en")} triangles, ` +
-    `${figures.fragments.toLocaleString("en")} fragments, up to ${figures.most_layers} in a pixel. ` +
-    `${figures.device}, driver ${figures.driver}; times are medians of ` +
-    `${figures.frames} ${figures.frames === 1 ? "frame" : "frames"}.`;
+    `${metrics.width}×${metrics.height}${metrics.eyes > 1 ? ", two eyes" : ""}, ${metrics.samples} ` +
+    `${metrics.samples > 1 ? "samples" : "sample"} a pixel, view ${metrics.view.map(angle => digits(angle)).join("°, ")}°, opacity ` +
+    `${digits(metrics.alpha)}. ${metrics.triangles.toLocaleString("en")} triangles, ` +
+    `${metrics.fragments.toLocaleString("en")} fragments, up to ${metrics.most_layers} in a pixel. ` +
+    `${metrics.device}, driver ${metrics.driver}; times are medians of ` +
+    `${metrics.frames} ${metrics.frames === 1 ? "frame" : "frames"}.`;
 
 // As a shell reads it again.
 const shellWord = word => /^[\w@%+=:,./-]+$/.test(word) ? word : "'" + word.replaceAll("'", "'\\''") + "'";
 byId("run").append(
-    element(byId("run"), "code", {}, ["cellist-tradeoff", ...(figures.arguments ?? []).map(shellWord)].join(" ")),
-    [figures.version && ` Version ${figures.version}`, figures.date && ` ${figures.date.replace("T", " ").replace("Z", " UTC")}`]
+    element(byId("run"), "code", {}, ["cellist-tradeoff", ...(metrics.arguments ?? []).map(shellWord)].join(" ")),
+    [metrics.version && ` Version ${metrics.version}`, metrics.date && ` ${metrics.date.replace("T", " ").replace("Z", " UTC")}`]
         .filter(part => part).join(","));
 

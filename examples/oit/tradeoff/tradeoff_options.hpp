@@ -20,8 +20,7 @@ struct TradeoffOptions : FrameOptions {
     /// A file goes to stdout, so that the table goes to stderr.
     [[nodiscard]] bool writes_to_stdout() const;
 
-    bool help = false;
-    std::string help_text = {};
+    std::string help_text = {};  ///< to be printed instead, where it is not empty
 };
 
 /// Reads and checks the command line, the paths of the output among it. Throws InputError where an

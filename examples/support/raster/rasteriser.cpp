@@ -91,9 +91,9 @@ std::string defines(const cellist::Device& device, const Sampling& sampling) {
 }
 
 cellist::Source setup_source(const cellist::Device& device, const Sampling& sampling) {
-    return {.text = joined({defines(device, sampling), "#define RASTER_WIDE", kernels::geometry_h,
-                            kernels::samples_h, kernels::transform_cl, kernels::triangle_clh,
-                            kernels::scan_clh, kernels::bin_cl}),
+    return {.text = joined({defines(device, sampling), "#define RASTER_WIDE",
+                            kernels::definitions_h, kernels::transform_cl, kernels::triangle_clh,
+                            kernels::clip_clh, kernels::bin_cl}),
             .file_name = "raster_setup.cl",
             .options = build_options(device)};
 }
@@ -209,12 +209,11 @@ SetupKernels::SetupKernels(const cellist::Device& device, const Sampling& sampli
 cellist::Source Pass::pass_source(const cellist::Device& device, const Sampling& sampling,
                                   std::string_view source, const std::string& name,
                                   const std::string& integer) {
-    return {
-        .text = joined({defines(device, sampling), integer == "long" ? "#define RASTER_WIDE" : "",
-                        kernels::geometry_h, kernels::samples_h, kernels::triangle_clh,
-                        kernels::scan_clh, source, kernels::draw_clh}),
-        .file_name = name,
-        .options = build_options(device)};
+    return {.text = joined({"#pragma OPENCL FP_CONTRACT OFF", defines(device, sampling),
+                            integer == "long" ? "#define RASTER_WIDE" : "", kernels::definitions_h,
+                            kernels::triangle_clh, source, kernels::draw_clh}),
+            .file_name = name,
+            .options = build_options(device)};
 }
 
 // ---- Projection ------------------------------------------------------------------------------

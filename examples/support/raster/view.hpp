@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <span>
 
 #include <cellist/cellist.hpp>
@@ -9,7 +8,7 @@ namespace raster {
 
 /// A pinhole camera and an image, as the kernels take them.
 struct View {
-    /// Rows that take a position (x, y, z, 1) to clip coordinates: see geometry.h.
+    /// Rows that take a position (x, y, z, 1) to clip coordinates: see definitions.h.
     cl_float row_x[4];
     cl_float row_y[4];
     cl_float row_w[4];
@@ -92,19 +91,7 @@ struct RasterCounts {
 };
 CELLIST_STRUCT(RasterCounts, triangles, blocks);
 
-#define RASTER_FMA(a, b, c) std::fma(a, b, c)
-#define RASTER_RINT(a) std::rint(a)
-#if defined(__GNUC__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wold-style-cast"
-#endif
-#include "raster/geometry.h"
-#include "raster/samples.h"
-#if defined(__GNUC__)
-#pragma GCC diagnostic pop
-#endif
-#undef RASTER_FMA
-#undef RASTER_RINT
+#include "raster/definitions.h"
 
 /// Where a sample of a pixel lies: 1/16 pixel from its centre.
 struct SampleOffset {

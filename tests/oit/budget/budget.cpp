@@ -5,7 +5,7 @@
 #include <initializer_list>
 #include <string>
 
-#include "budget/keeper.hpp"
+#include "budget/budget_controller.hpp"
 #include "camera.hpp"
 #include "input_error.hpp"
 #include "oit/support/random_scene.hpp"
@@ -18,16 +18,17 @@
 namespace cellist::test {
 namespace {
 
-using Fate = oit::Candidate::Fate;
+using Outcome = oit::Candidate::Outcome;
 
 raster::View view_from(double azimuth_degrees) {
     return support::frame_unit_sphere({azimuth_degrees, 10}, 48, 36);
 }
 
-void require_met(const oit::Frame& frame, const oit::Keeper& keeper, const oit::Budget& budget) {
+void require_met(const oit::Frame& frame, const oit::BudgetController& controller,
+                 const oit::Budget& budget) {
     const oit::Comparison comparison =
-        oit::compare(oit::draw_reference(frame, {}), keeper.renderer().image(), {});
-    INFO(oit::text(keeper.choice().setting)
+        oit::compare(oit::draw_reference(frame, {}), controller.renderer().image(), {});
+    INFO(oit::text(controller.choice().setting)
          << ": " << comparison.psnr_db << " dB, largest error " << comparison.max_abs_error);
     if (comparison.pixels_ambiguous > 0) return;  // either order is right there
     if (budget.kind == oit::Budget::Kind::psnr)
@@ -36,16 +37,16 @@ void require_met(const oit::Frame& frame, const oit::Keeper& keeper, const oit::
         CHECK(comparison.max_abs_error <= budget.limit);
 }
 
-// All layers in float have drawn by turns with what was chosen, or are what was chosen.
+// All layers in float have drawn interleaved with what was chosen, or are what was chosen.
 void require_times_against_chosen(const oit::Choice& choice) {
     const std::string exact = oit::text(oit::exact_setting(choice.setting.quality));
     for (const oit::Candidate& candidate : choice.candidates) {
         INFO(oit::text(candidate.setting));
-        if (candidate.fate == Fate::chosen) CHECK(candidate.times_chosen == 1.0);
+        if (candidate.outcome == Outcome::chosen) CHECK(candidate.times_chosen == 1.0);
         if (oit::text(candidate.setting) == exact)
             CHECK(candidate.times_chosen == choice.exact_times);
-        if (candidate.fate == Fate::slower && candidate.fastest_ms)
-            CHECK((candidate.times_chosen || candidate.times_leader));
+        if (candidate.outcome == Outcome::slower && candidate.fastest_ms)
+            CHECK((candidate.times_chosen || candidate.times_fastest));
     }
     CHECK(choice.exact_times.has_value());
     if (oit::text(choice.setting) == exact) CHECK(choice.exact_times == 1.0);
@@ -72,11 +73,11 @@ TEST_CASE("a budget is decibels, a fraction or a number") {
     }
 }
 
-TEST_CASE("a search tells how far it is, from 0 to 1") {
+TEST_CASE("a search reports its progress, from 0 to 1") {
     const oit::Scene scene = random_scene(1, {oit::Blend::over});
     const oit::Frame frame{.scene = scene, .views = {view_from(30)}};
     std::vector<double> parts;
-    const oit::Keeper keeper(
+    const oit::BudgetController controller(
         device(), frame, oit::parse_budget("35dB"), 1,
         {.progress = [&](double part) { parts.push_back(part); }, .seconds = 0});
     REQUIRE(parts.size() > 2);
@@ -90,34 +91,34 @@ TEST_CASE("what is chosen meets the budget, also after the view has changed") {
     for (const char* text : {"35dB", "1/255"}) {
         const oit::Budget budget = oit::parse_budget(text);
         oit::Frame frame{.scene = scene, .views = {view_from(30)}};
-        oit::Keeper keeper(device(), frame, budget);
+        oit::BudgetController controller(device(), frame, budget);
         INFO("budget " << text);
-        REQUIRE(keeper.choice().met);
-        const oit::Keeper::Drawn first = keeper.draw();
+        REQUIRE(controller.choice().met);
+        const oit::BudgetController::Drawn first = controller.draw();
         CHECK(first.checked);
         CHECK_FALSE(first.changed);
-        CHECK_FALSE(keeper.draw().checked);
-        require_met(frame, keeper, budget);
+        CHECK_FALSE(controller.draw().checked);
+        require_met(frame, controller, budget);
         for (const double azimuth : {75.0, 200.0}) {
             frame.views = {view_from(azimuth)};
-            const oit::Keeper::Drawn drawn = keeper.draw();
+            const oit::BudgetController::Drawn drawn = controller.draw();
             CHECK(drawn.changed);
             CHECK(drawn.checked);
-            REQUIRE(budget.met_by(drawn.errors.value().told));
-            require_met(frame, keeper, budget);
+            REQUIRE(budget.met_by(drawn.errors.value().resolved));
+            require_met(frame, controller, budget);
         }
     }
 }
 
-TEST_CASE("times are told against what was chosen, and settings as fast are not as plain") {
+TEST_CASE("times are relative to what was chosen, and settings as fast are not as plain") {
     const oit::Scene scene = random_scene(3, {oit::Blend::over});
     const oit::Frame frame{.scene = scene, .views = {view_from(30)}};
     for (const char* text : {"25dB", "1/255"}) {
         const oit::Budget budget = oit::parse_budget(text);
-        const oit::Choice choice = oit::Keeper(device(), frame, budget).choice();
+        const oit::Choice choice = oit::BudgetController(device(), frame, budget).choice();
         require_times_against_chosen(choice);
         for (const oit::Candidate& candidate : choice.candidates) {
-            if (candidate.fate != Fate::as_fast) continue;
+            if (candidate.outcome != Outcome::as_fast) continue;
             INFO(oit::text(candidate.setting));
             CHECK(candidate.times.has_value());
             CHECK(plainer(choice.setting, candidate.setting));
@@ -129,13 +130,15 @@ TEST_CASE("a search that has no time chooses from what it has seen, and says wha
     const oit::Scene scene = random_scene(3, {oit::Blend::over});
     const oit::Frame frame{.scene = scene, .views = {view_from(30)}};
     const oit::Choice choice =
-        oit::Keeper(device(), frame, oit::parse_budget("25dB"), 1, {.seconds = 0}).choice();
+        oit::BudgetController(device(), frame, oit::parse_budget("25dB"), 1, {.seconds = 0})
+            .choice();
     CHECK(choice.met);
     CHECK(oit::text(choice.setting) == oit::text(oit::exact_setting({})));
-    CHECK(choice.turns >= 3);
-    CHECK(choice.count(Fate::not_reached) > 10);
+    CHECK(choice.timed_frames >= 3);
+    CHECK(choice.count(Outcome::not_reached) > 10);
     for (const oit::Candidate& candidate : choice.candidates)
-        if (candidate.fate == Fate::not_reached) CHECK_FALSE(candidate.fastest_ms.has_value());
+        if (candidate.outcome == Outcome::not_reached)
+            CHECK_FALSE(candidate.fastest_ms.has_value());
 }
 
 TEST_CASE("undecided pixels keep a frame from a strict budget, and are counted for any other") {
@@ -144,13 +147,15 @@ TEST_CASE("undecided pixels keep a frame from a strict budget, and are counted f
     for (const char* text : {"1/255", "40dB"}) {
         INFO(text);
         oit::Budget budget = oit::parse_budget(text);
-        const oit::Choice choice = oit::Keeper(device(), frame, budget, 1, {.seconds = 0}).choice();
+        const oit::Choice choice =
+            oit::BudgetController(device(), frame, budget, 1, {.seconds = 0}).choice();
         CHECK(choice.met);
         CHECK(choice.errors.undecided_pixels > 0);
-        CHECK(choice.errors.undecided_pixels <= choice.scene.pixels_untold[0]);
+        CHECK(choice.errors.undecided_pixels <= choice.scene.pixels_unresolved[0]);
         CHECK_FALSE(budget.met_by(choice.errors.all));
         budget.strict = true;
-        const oit::Choice strict = oit::Keeper(device(), frame, budget, 1, {.seconds = 0}).choice();
+        const oit::Choice strict =
+            oit::BudgetController(device(), frame, budget, 1, {.seconds = 0}).choice();
         CHECK_FALSE(strict.met);
         CHECK_FALSE(budget.met_by(strict.errors));
     }
@@ -159,12 +164,12 @@ TEST_CASE("undecided pixels keep a frame from a strict budget, and are counted f
 TEST_CASE("a budget that no setting meets leads to the most accurate one") {
     const oit::Scene scene = random_scene(2, {oit::Blend::over});
     const oit::Frame frame{.scene = scene, .views = {view_from(30)}};
-    const oit::Keeper keeper(device(), frame, oit::parse_budget("199dB"));
-    CHECK_FALSE(keeper.choice().met);
-    CHECK_FALSE(oit::parse_budget("199dB").met_by(keeper.choice().scene.exact));
-    for (const oit::Candidate& candidate : keeper.choice().candidates)
+    const oit::BudgetController controller(device(), frame, oit::parse_budget("199dB"));
+    CHECK_FALSE(controller.choice().met);
+    CHECK_FALSE(oit::parse_budget("199dB").met_by(controller.choice().scene.exact));
+    for (const oit::Candidate& candidate : controller.choice().candidates)
         if (candidate.error)
-            CHECK(candidate.error->psnr_db() <= keeper.choice().errors.told.psnr_db());
+            CHECK(candidate.error->psnr_db() <= controller.choice().errors.resolved.psnr_db());
 }
 
 }  // namespace cellist::test

@@ -169,7 +169,7 @@ TEST_CASE("a measurement has times, memory, errors and the image") {
     CHECK(one.comparison.ssim < 0.99);
 }
 
-TEST_CASE("settings are measured by turns, each with as many frames") {
+TEST_CASE("settings are measured interleaved, each with as many frames") {
     const oit::Scene scene = knot();
     const oit::Frame frame = frame_of(scene);
     const oit::Reference reference = oit::draw_reference(frame);
@@ -179,7 +179,7 @@ TEST_CASE("settings are measured by turns, each with as many frames") {
     for (const std::uint32_t frames : {1U, 2U, 5U}) {
         std::vector<std::string> names;
         double done = 0;
-        const std::vector<oit::Measurement> measurements = oit::measure_by_turns(
+        const std::vector<oit::Measurement> measurements = oit::measure_interleaved(
             device(), frame, reference, settings, frames,
             [&](oit::Measurement& measurement) {
                 names.emplace_back(measurement.setting.method->name);
@@ -202,7 +202,7 @@ TEST_CASE("settings are measured by turns, each with as many frames") {
     }
 }
 
-TEST_CASE("what cannot be drawn has a reason and no figures") {
+TEST_CASE("what cannot be drawn has a reason and no metrics") {
     const oit::Scene scene = knot();
     const oit::Frame frame = frame_of(scene);
     const oit::Setting refused{&oit::method_named("dual_peeling"), {.layers = 3}};

@@ -36,14 +36,14 @@ TEST_CASE("quartiles have half of the times between them") {
     CHECK(oit::spread_of({7}).upper_quartile_ms == 7);
 }
 
-TEST_CASE("a setting is told slower by its median and by quartiles that do not overlap") {
+TEST_CASE("a setting is measurably slower by its median and by quartiles that do not overlap") {
     const oit::Spread fast{9, 10, 11, 12};
-    CHECK(oit::told_slower({12, 13, 14, 15}, fast));
-    CHECK_FALSE(oit::told_slower({9, 11.5, 14, 20}, fast));
-    CHECK_FALSE(oit::told_slower(fast, {12, 13, 14, 15}));
+    CHECK(oit::measurably_slower({12, 13, 14, 15}, fast));
+    CHECK_FALSE(oit::measurably_slower({9, 11.5, 14, 20}, fast));
+    CHECK_FALSE(oit::measurably_slower(fast, {12, 13, 14, 15}));
     // Within 3 %, however little times vary.
-    CHECK_FALSE(oit::told_slower({10.2, 10.2, 10.2, 10.2}, {10, 10, 10, 10}));
-    CHECK(oit::told_slower({10.4, 10.4, 10.4, 10.4}, {10, 10, 10, 10}));
+    CHECK_FALSE(oit::measurably_slower({10.2, 10.2, 10.2, 10.2}, {10, 10, 10, 10}));
+    CHECK(oit::measurably_slower({10.4, 10.4, 10.4, 10.4}, {10, 10, 10, 10}));
 }
 
 TEST_CASE("a setting that is clearly faster is chosen, however special it is") {

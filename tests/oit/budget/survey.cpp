@@ -28,9 +28,9 @@ oit::Frame frame_of(const oit::Scene& scene, const oit::Quality& quality = {}) {
             .quality = quality};
 }
 
-// Errors of a picture in the pixels whose order of layers is told, and in all.
+// Errors of a picture in the pixels whose order of layers is resolved, and in all.
 struct Measured {
-    PictureError told, all;
+    PictureError resolved, all;
 };
 
 Measured measure(const oit::Reference& reference, const std::vector<cl_float4>& image) {
@@ -46,7 +46,7 @@ Measured measure(const oit::Reference& reference, const std::vector<cl_float4>& 
                 to.mean_square += error * error / channels;
             };
             add(measured.all);
-            if (!reference.ambiguous[p]) add(measured.told);
+            if (!reference.ambiguous[p]) add(measured.resolved);
         }
     return measured;
 }
@@ -61,7 +61,7 @@ void require_within(const PictureError& error, const PictureError& bound, const 
 // Draws the frame in all formats and with all cuts.
 void require_bounds(const oit::Frame& frame) {
     oit::Survey survey(device(), frame, layer_counts, epsilons);
-    const oit::SceneMeasure bounds = survey.measure(frame);
+    const oit::SurveyResult bounds = survey.measure(frame);
     const oit::Reference reference = oit::draw_reference(frame);
     std::uint64_t longest = 0;
     for (std::size_t p = 0; p + 1 < reference.offsets.size(); ++p)
@@ -77,9 +77,9 @@ void require_bounds(const oit::Frame& frame) {
         oit::Renderer renderer(device(), other);
         renderer.draw();
         const Measured is = measure(reference, renderer.image());
-        require_within(is.told, bound, what);
+        require_within(is.resolved, bound, what);
         const oit::PictureErrors compared = survey.compare(renderer.picture());
-        require_within(is.told, compared.told, what + ", compared");
+        require_within(is.resolved, compared.resolved, what + ", compared");
         require_within(is.all, compared.all, what + ", compared, with any order");
     };
     for (const oit::NodeFormatName& format : oit::node_formats) {
@@ -87,7 +87,7 @@ void require_bounds(const oit::Frame& frame) {
         quality.format = format.format;
         require_drawn(quality, bounds.format(format.format), std::string(format.name));
     }
-    for (const oit::SceneMeasure::Cut& cut : bounds.cuts) {
+    for (const oit::SurveyResult::Cut& cut : bounds.cuts) {
         oit::Quality quality = frame.quality;
         if (cut.layers > 0) quality.layers = cut.layers;
         quality.epsilon = cut.epsilon;
@@ -152,12 +152,12 @@ TEST_CASE("bounds hold at the limits of numbers") {
         const oit::Scene scene = info.make(0.35F);
         const oit::Frame frame = frame_of(scene);
         oit::Survey survey(device(), frame, layer_counts, epsilons);
-        const oit::SceneMeasure bounds = survey.measure(frame);
+        const oit::SurveyResult bounds = survey.measure(frame);
         const oit::Reference reference = oit::draw_reference(frame);
         oit::Renderer renderer(device(), frame);
         renderer.draw();
         const Measured is = measure(reference, renderer.image());
-        require_within(is.told, bounds.exact, "all layers");
+        require_within(is.resolved, bounds.exact, "all layers");
         require_within(is.all, bounds.exact_with_order, "all layers, with any order");
     }
 }

@@ -7,6 +7,7 @@
 #include "reference/comparison.hpp"
 #include "support/catch.hpp"
 #include "support/device.hpp"
+#include "support/skip.hpp"
 
 namespace cellist::test {
 namespace {
@@ -76,10 +77,8 @@ TEST_CASE("large triangles are as accurate as small ones") {
 
 TEST_CASE("the bunny is drawn as accurately as promised") {
     const std::filesystem::path path = CELLIST_BUNNY_PATH;
-    if (!std::filesystem::exists(path)) {
-        WARN("left out, for want of " << path.string() << " (glmark2-data)");
-        return;
-    }
+    if (!std::filesystem::exists(path))
+        CELLIST_SKIP("there is no " + path.string() + ": install glmark2-data");
     support::Mesh bunny = support::load_mesh(path);
     support::fit_to_unit_sphere(bunny);
     require_accurate(bunny, {.orbit = {25, 8}, .width = 1280, .height = 720});

@@ -31,7 +31,7 @@ oit::Scene knots(const std::vector<Blend>& blends) {
             glm::rotate(glm::dmat4(1), 0.5 * static_cast<double>(i), glm::dvec3(0.3, 1, 0.2));
         scene.instances.push_back(
             {.material = i,
-             .place = glm::scale(turned, glm::dvec3(1 - 0.2 * static_cast<double>(i)))});
+             .to_world = glm::scale(turned, glm::dvec3(1 - 0.2 * static_cast<double>(i)))});
     }
     return scene;
 }
@@ -92,9 +92,9 @@ TEST_CASE("light passes a slab by the law of Beer and Lambert") {
     scene.materials.push_back(medium);
     scene.instances.push_back({});
     for (int i = 0; i < 3; ++i)
-        scene.look.background_top[i] = scene.look.background_bottom[i] = 0.8F;
+        scene.lighting.background_top[i] = scene.lighting.background_bottom[i] = 0.8F;
     // At opacity 0, what adds to an absorbing surface is nothing.
-    for (int i = 0; i < 3; ++i) scene.look.rim[i] = 0;
+    for (int i = 0; i < 3; ++i) scene.lighting.rim[i] = 0;
     const oit::Frame frame{.scene = scene, .views = {support::frame_unit_sphere({0, 0}, 33, 33)}};
     oit::Renderer renderer(device(), frame);
     renderer.draw();

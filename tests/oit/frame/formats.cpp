@@ -22,7 +22,7 @@ oit::Frame frame_of(const oit::Scene& scene, const oit::Quality& quality) {
             .quality = quality};
 }
 
-// Requires that pixels in which depths can be told apart are within the bound that follows from the
+// Requires that pixels in which depths are resolved are within the bound that follows from the
 // format's, and returns how many these are.
 std::size_t require_within_bound(const oit::Scene& scene, const oit::Quality& quality) {
     const oit::Frame frame = frame_of(scene, quality);
@@ -33,9 +33,9 @@ std::size_t require_within_bound(const oit::Scene& scene, const oit::Quality& qu
     const auto lengths = renderer.method().lengths();
     REQUIRE(lengths->total == reference.fragments.size());
     // An error of an opacity counts once for each layer, up to the brightest colour.
-    const double bound = renderer.layout().colour_error(renderer.needs()) +
+    const double bound = renderer.layout().colour_error(renderer.features()) +
                          static_cast<double>(lengths->longest) * renderer.layout().alpha_error() *
-                             static_cast<double>(renderer.needs().colour_max) +
+                             static_cast<double>(renderer.features().colour_max) +
                          1e-5;
     std::size_t certain = 0, wrong = 0;
     double largest = 0;
@@ -78,7 +78,7 @@ TEST_CASE("a node has no more words than the frame needs") {
         INFO("format " << static_cast<int>(c.format));
         const auto words = [&](const oit::Scene& scene, int samples) {
             const oit::Quality quality{.samples = samples, .format = c.format};
-            return node_layout(quality, needs_of(frame_of(scene, quality))).words;
+            return node_layout(quality, features_of(frame_of(scene, quality))).words;
         };
         CHECK(words(knot(), 1) == c.uniform);
         CHECK(words(smoky_knot(), 1) == c.smoky);
@@ -115,7 +115,7 @@ TEST_CASE("formats hold coverage and kinds of blending, too") {
     filter.blend = static_cast<cl_uint>(oit::Blend::multiplicative);
     scene.materials.push_back(filter);
     scene.instances.push_back({.material = 1});
-    scene.instances.back().place[3].x = 0.3;
+    scene.instances.back().to_world[3].x = 0.3;
     for (const oit::NodeFormatName& format : oit::node_formats) {
         INFO(format.name);
         require_within_bound(scene, {.samples = 4, .format = format.format});
@@ -143,7 +143,7 @@ TEST_CASE("depths in nodes are as fine as they are said to be") {
                 for (std::size_t i = 0; i < depths.size(); ++i) {
                     const double depth = reference.fragments[reference.offsets[p] + i].depth;
                     if (std::abs(depths[i] - depth) >
-                        renderer.layout().depth_resolution(renderer.needs()).at(depth))
+                        renderer.layout().depth_resolution(renderer.features()).at(depth))
                         ++wrong;
                 }
             }

@@ -15,28 +15,28 @@ TEST_CASE("colours are within their bounds at the limits of numbers, in every fo
     const std::string text = document();
     for (const Extreme& extreme : extremes)
         for (const auto& [format, name] : oit::node_formats) {
-            const ColourFigures figures = measure(device(), extreme, format);
-            INFO(extreme.name << ", " << name << ": " << figure(figures.error) << " of "
-                              << figure(figures.bound) << ", " << figures.undecided
+            const ColourMetrics metrics = measure(device(), extreme, format);
+            INFO(extreme.name << ", " << name << ": " << short_number(metrics.error) << " of "
+                              << short_number(metrics.bound) << ", " << metrics.undecided
                               << " pixels undecided");
-            CHECK(contains(text, colour_line(extreme, name, figures)));
-            CHECK(figures.error <= figures.bound);
-            CHECK(figures.pixels_nan == 0);
-            CHECK(figures.other_counts == 0);
-            CHECK(figures.layers > 0);
-            CHECK(figures.repeats);
-            CHECK(figures.undecided_used <= 1);
+            CHECK(contains(text, colour_line(extreme, name, metrics)));
+            CHECK(metrics.error <= metrics.bound);
+            CHECK(metrics.pixels_nan == 0);
+            CHECK(metrics.other_counts == 0);
+            CHECK(metrics.layers > 0);
+            CHECK(metrics.repeats);
+            CHECK(metrics.undecided_used <= 1);
         }
 }
 
 TEST_CASE("depths from 10^-4 to 10^6 are within their bounds") {
     const std::string text = document();
     for (const DepthCase& depth_case : depth_cases) {
-        const DepthFigures figures = measure(device(), depth_case);
-        INFO(depth_case.name << ": " << figures.used << " of the bound");
-        CHECK(contains(text, depth_line(depth_case, figures)));
-        CHECK(figures.fragments > 5000);
-        CHECK(figures.used <= 1);
+        const DepthMetrics metrics = measure(device(), depth_case);
+        INFO(depth_case.name << ": " << metrics.used << " of the bound");
+        CHECK(contains(text, depth_line(depth_case, metrics)));
+        CHECK(metrics.fragments > 5000);
+        CHECK(metrics.used <= 1);
     }
 }
 

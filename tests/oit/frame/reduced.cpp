@@ -39,7 +39,7 @@ oit::Scene knot_between_sheets(oit::Blend blend) {
     const auto add = [&](double z, std::size_t material) {
         scene.instances.push_back({.model = 1,
                                    .material = material,
-                                   .place = glm::translate(glm::dmat4(1), glm::dvec3(0, 0, z))});
+                                   .to_world = glm::translate(glm::dmat4(1), glm::dvec3(0, 0, z))});
     };
     add(1.1, 1);
     add(-1.1, 2);

@@ -37,7 +37,7 @@ oit::Scene scene_of(const std::vector<Sheet>& sheets, bool one_colour = false) {
                     sheets[i].brightness * (0.1F + 0.13F * static_cast<float>((i + 3 * c) % 7));
         scene.materials.push_back(material);
         oit::Instance instance{.material = i};
-        instance.place[3] = glm::dvec4(0, 0, sheets[i].z, 1);
+        instance.to_world[3] = glm::dvec4(0, 0, sheets[i].z, 1);
         scene.instances.push_back(instance);
     }
     return scene;
@@ -70,9 +70,9 @@ Difference difference_from(const Definition& definition, const oit::Frame& frame
     renderer.draw();
     const std::vector<cl_float4> image = renderer.image();
     const oit::Reference reference = oit::draw_reference(frame);
-    const oit::Needs& needs = renderer.needs();
-    const defined::DepthBounds bounds{static_cast<double>(needs.least_depth),
-                                      static_cast<double>(needs.greatest_depth)};
+    const oit::FrameFeatures& features = renderer.features();
+    const defined::DepthBounds bounds{static_cast<double>(features.least_depth),
+                                      static_cast<double>(features.greatest_depth)};
     const auto width = static_cast<std::size_t>(frame.width());
     Difference difference;
     glm::dvec3 sum(0);
@@ -87,7 +87,7 @@ Difference difference_from(const Definition& definition, const oit::Frame& frame
             light.colour + light.transmittance * reference.image[p / width * width];
         const glm::dvec3 off =
             (glm::dvec3(image[p].s[0], image[p].s[1], image[p].s[2]) - expected) /
-            static_cast<double>(needs.colour_max);
+            static_cast<double>(features.colour_max);
         for (int c = 0; c < 3; ++c)
             // NaN counts as far off.
             difference.largest =

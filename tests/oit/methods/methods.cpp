@@ -15,6 +15,7 @@
 #include "scene/scenes.hpp"
 #include "support/catch.hpp"
 #include "support/device.hpp"
+#include "support/skip.hpp"
 
 namespace cellist::test {
 namespace {
@@ -27,8 +28,9 @@ oit::Scene knots(Blend inner) {
     oit::Material material = oit::glass(0.6F);
     material.blend = static_cast<cl_uint>(inner);
     scene.materials.push_back(material);
-    scene.instances.push_back({.place = glm::scale(glm::dmat4(1), glm::dvec3(0.8))});
-    scene.instances.push_back({.material = 1, .place = glm::scale(glm::dmat4(1), glm::dvec3(0.8))});
+    scene.instances.push_back({.to_world = glm::scale(glm::dmat4(1), glm::dvec3(0.8))});
+    scene.instances.push_back(
+        {.material = 1, .to_world = glm::scale(glm::dmat4(1), glm::dvec3(0.8))});
     oit::add_floor(scene);
     return scene;
 }
@@ -39,8 +41,15 @@ oit::Frame frame_of(const oit::Scene& scene, const oit::Quality& quality = {}) {
             .quality = quality};
 }
 
+// Whether the method refuses the frame. Notes the reason.
+bool is_refused(const oit::MethodInfo& method, const oit::Frame& frame) {
+    const std::string refusal = method.refusal(frame, oit::features_of(frame));
+    if (!refusal.empty()) note_skip(std::string(method.name) + ": " + refusal);
+    return !refusal.empty();
+}
+
 void require_exact(const oit::MethodInfo& method, const oit::Frame& frame) {
-    if (!method.refusal(frame, oit::needs_of(frame)).empty()) return;
+    if (is_refused(method, frame)) return;
     oit::Renderer renderer(device(), frame, method);
     renderer.draw();
     renderer.draw();
@@ -54,7 +63,7 @@ void require_exact(const oit::MethodInfo& method, const oit::Frame& frame) {
 }
 
 TEST_CASE("exact methods blend all fragments") {
-    // By turns: methods share the code that blends.
+    // Interleaved: methods share the code that blends.
     constexpr std::array blends{Blend::over, Blend::multiplicative, Blend::absorb};
     std::size_t turn = 0;
     for (const oit::MethodInfo& method : oit::methods())
@@ -74,7 +83,7 @@ TEST_CASE("every method gives the same bits every time, and no colour that is no
     const oit::Scene scene = knots(Blend::over);
     const oit::Frame frame = frame_of(scene);
     for (const oit::MethodInfo& method : oit::methods()) {
-        if (!method.refusal(frame, oit::needs_of(frame)).empty()) continue;
+        if (is_refused(method, frame)) continue;
         INFO(method.name);
         oit::Renderer renderer(device(), frame, method);
         renderer.draw();
@@ -124,7 +133,7 @@ TEST_CASE("a hundred layers of one bright colour are as bright as each of them")
         const oit::Reference reference = oit::draw_reference(frame);
         REQUIRE(reference.most_layers() == 100);
         for (const oit::MethodInfo& method : oit::methods()) {
-            if (!method.refusal(frame, oit::needs_of(frame)).empty()) continue;
+            if (is_refused(method, frame)) continue;
             INFO(method.name << ", colours of " << brightness);
             oit::Renderer renderer(device(), frame, method);
             renderer.draw();
@@ -134,7 +143,7 @@ TEST_CASE("a hundred layers of one bright colour are as bright as each of them")
                 for (int c = 0; c < 3; ++c)
                     largest = std::max(largest, std::abs(static_cast<double>(image[p].s[c]) -
                                                          reference.image[p][c]));
-            CHECK(largest < 1e-4 * static_cast<double>(renderer.needs().colour_max));
+            CHECK(largest < 1e-4 * static_cast<double>(renderer.features().colour_max));
         }
     }
 }
@@ -154,7 +163,7 @@ TEST_CASE("blending that ends early is within its bound") {
                     std::abs(static_cast<double>(image[p].s[c]) - reference.image[p][c]);
                 if (error > 1e-5) ++different;
                 if (!reference.ambiguous[p] &&
-                    error > static_cast<double>(epsilon * renderer.needs().colour_max) + 1e-5)
+                    error > static_cast<double>(epsilon * renderer.features().colour_max) + 1e-5)
                     ++wrong;
             }
         INFO("epsilon " << epsilon);

@@ -141,7 +141,7 @@ void add_square(oit::Scene& scene, const glm::dmat4& place) {
     for (int c = 0; c < 3; ++c)
         material.front_tint[c] = material.back_tint[c] = c == 2 * number % 3 ? 0.9F : 0.05F;
     scene.instances.push_back(
-        {.model = scene.models.size(), .material = scene.materials.size(), .place = place});
+        {.model = scene.models.size(), .material = scene.materials.size(), .to_world = place});
     scene.models.push_back({.mesh = square});
     scene.materials.push_back(material);
 }

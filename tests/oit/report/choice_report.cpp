@@ -14,7 +14,7 @@
 namespace cellist::test {
 namespace {
 
-using Fate = oit::Candidate::Fate;
+using Outcome = oit::Candidate::Outcome;
 
 oit::PictureError off_by(double largest) { return {largest, largest * largest}; }
 
@@ -31,32 +31,33 @@ oit::Setting named(const char* method) {
 }
 
 // Of 8 layers, whose order float does not tell in some pixels.
-oit::Choice choice_of(const oit::Setting& setting, std::uint64_t untold = 0) {
+oit::Choice choice_of(const oit::Setting& setting, std::uint64_t unresolved = 0) {
     oit::Choice choice;
     choice.met = true;
     choice.setting = setting;
     choice.times = {2, 2.1, 2.25, 2.5};
-    choice.turns = 15;
-    choice.errors = {off_by(0.5 / 255), off_by(untold > 0 ? 12.0 / 255 : 0.5 / 255), untold};
+    choice.timed_frames = 15;
+    choice.errors = {off_by(0.5 / 255), off_by(unresolved > 0 ? 12.0 / 255 : 0.5 / 255),
+                     unresolved};
     choice.scene.pixels = 100;
     choice.scene.fragments = 1234;
     choice.scene.nonempty_pixels = 50;
     choice.scene.longest = 8;
     choice.scene.pixels_by_layers = {50, 25, 25};
-    choice.scene.pixels_untold = {untold, untold, 3};
+    choice.scene.pixels_unresolved = {unresolved, unresolved, 3};
     choice.scene.exact = off_by(0.1 / 255);
     choice.scene.cuts = {{.layers = 2, .error = {}, .light_behind = 0.5},
                          {.layers = 4, .error = {}, .light_behind = 0.25}};
-    choice.candidates = {{.setting = setting, .fate = Fate::chosen, .times_chosen = 1.0}};
+    choice.candidates = {{.setting = setting, .outcome = Outcome::chosen, .times_chosen = 1.0}};
     return choice;
 }
 
 oit::Budget budget_of(const char* text) { return oit::parse_budget(text); }
 
-oit::KeptBudget kept_for(const oit::Choice& choice, const oit::Budget& budget) {
-    oit::KeptBudget kept;
-    kept.add({.checked = true, .errors = choice.errors}, 0, budget);
-    return kept;
+oit::BudgetRecord kept_for(const oit::Choice& choice, const oit::Budget& budget) {
+    oit::BudgetRecord record;
+    record.add({.checked = true, .errors = choice.errors}, 0, budget);
+    return record;
 }
 
 std::string screen(const oit::Choice& choice, const oit::Budget& budget) {
@@ -73,7 +74,7 @@ std::string line_with(const std::string& text, const std::string& part) {
     return text.substr(first, text.find('\n', at) - first);
 }
 
-TEST_CASE("speed is told against all layers in float, and not where these were chosen") {
+TEST_CASE("speed is relative to all layers in float, and not where these were chosen") {
     oit::Choice choice = choice_of(linked(4));
     choice.exact_times = 1.5;
     CHECK(contains(line_with(screen(choice, budget_of("1/255")), "speed"), "1.50 times"));
@@ -85,12 +86,12 @@ TEST_CASE("speed is told against all layers in float, and not where these were c
 TEST_CASE("a setting that is as fast is not called slower, and one that drew before is marked") {
     oit::Choice choice = choice_of(linked());
     choice.candidates.push_back({.setting = linked(4),
-                                 .fate = Fate::as_fast,
+                                 .outcome = Outcome::as_fast,
                                  .fastest_ms = 2,
                                  .times = oit::Spread{1.8, 1.9, 2, 2.2},
                                  .times_chosen = 1.004});
     choice.candidates.push_back(
-        {.setting = linked(2), .fate = Fate::slower, .fastest_ms = 3, .times_leader = 1.4});
+        {.setting = linked(2), .outcome = Outcome::slower, .fastest_ms = 3, .times_fastest = 1.4});
     const std::string text = screen(choice, budget_of("1/255"));
     const std::string as_fast = line_with(text, "--layers 4"),
                       slower = line_with(text, "--layers 2");
@@ -112,13 +113,14 @@ TEST_CASE("settings that are not shown are counted") {
     oit::Choice choice = choice_of(linked());
     for (std::uint32_t layers = 10; layers < 17; ++layers)
         choice.candidates.push_back(
-            {.setting = linked(layers), .fate = Fate::slower, .fastest_ms = 3});
+            {.setting = linked(layers), .outcome = Outcome::slower, .fastest_ms = 3});
     for (std::uint32_t layers = 20; layers < 25; ++layers)
         choice.candidates.push_back(
-            {.setting = linked(layers), .fate = Fate::over_budget, .error = off_by(0.5)});
-    choice.candidates.push_back({.setting = linked(30), .fate = Fate::not_needed});
-    choice.candidates.push_back({.setting = linked(31), .fate = Fate::slower});
-    choice.candidates.push_back({.setting = linked(32), .fate = Fate::failed, .failure = "why"});
+            {.setting = linked(layers), .outcome = Outcome::over_budget, .error = off_by(0.5)});
+    choice.candidates.push_back({.setting = linked(30), .outcome = Outcome::not_needed});
+    choice.candidates.push_back({.setting = linked(31), .outcome = Outcome::slower});
+    choice.candidates.push_back(
+        {.setting = linked(32), .outcome = Outcome::failed, .failure = "why"});
     const std::string rest = line_with(screen(choice, budget_of("1/255")), " more: ");
     for (const char* part : {"... and 7 more", "3 slower", "1 over the budget", "1 not needed",
                              "1 expected to be slower, not drawn", "1 failed", "--json"}) {
@@ -144,17 +146,17 @@ TEST_CASE("the chosen setting has the spread of its times beside it") {
 }
 
 TEST_CASE("a budget is met, met except undecided pixels, or not met") {
-    const auto verdict_of = [](std::uint64_t untold, const char* text, bool strict) {
+    const auto verdict_of = [](std::uint64_t unresolved, const char* text, bool strict) {
         oit::Budget budget = budget_of(text);
         budget.strict = strict;
-        const oit::Choice choice = choice_of(linked(), untold);
-        const oit::KeptBudget kept = kept_for(choice, budget);
-        const nlohmann::ordered_json json = oit::json_of(choice, budget, kept);
-        CHECK(json["verdict"] == kept.verdict());
-        CHECK(json["met"] == kept.met());
+        const oit::Choice choice = choice_of(linked(), unresolved);
+        const oit::BudgetRecord record = kept_for(choice, budget);
+        const nlohmann::ordered_json json = oit::json_of(choice, budget, record);
+        CHECK(json["verdict"] == record.verdict());
+        CHECK(json["met"] == record.met());
         CHECK(json["strict"] == strict);
-        CHECK(contains(line_with(screen(choice, budget), "budget  "), kept.verdict()));
-        return kept.verdict();
+        CHECK(contains(line_with(screen(choice, budget), "budget  "), record.verdict()));
+        return record.verdict();
     };
     CHECK(verdict_of(0, "1/255", false) == "met");
     CHECK(verdict_of(0, "1/255", true) == "met");
@@ -167,20 +169,20 @@ TEST_CASE("a budget is met, met except undecided pixels, or not met") {
 
 TEST_CASE("what a search had no time for is counted") {
     oit::Choice choice = choice_of(linked());
-    choice.candidates.push_back({.setting = linked(4), .fate = Fate::not_reached});
-    choice.candidates.push_back({.setting = linked(8), .fate = Fate::not_reached});
+    choice.candidates.push_back({.setting = linked(4), .outcome = Outcome::not_reached});
+    choice.candidates.push_back({.setting = linked(8), .outcome = Outcome::not_reached});
     CHECK(contains(line_with(screen(choice, budget_of("1/255")), "search"),
                    "the time limit left out 2 settings: raise --search-seconds"));
     CHECK(oit::json_of(choice, budget_of("1/255"), {})["not_reached"] == 2);
 }
 
-TEST_CASE("a budget below what can be proven is told apart from one that no setting meets") {
+TEST_CASE("a budget below what can be proven differs from one that no setting meets") {
     oit::Choice choice = choice_of(linked());
     choice.met = false;
-    choice.candidates.front().fate = Fate::over_budget;
+    choice.candidates.front().outcome = Outcome::over_budget;
     choice.candidates.front().error = off_by(0.5 / 255);
     choice.candidates.push_back(
-        {.setting = named("counted"), .fate = Fate::over_budget, .error = off_by(0.5 / 255)});
+        {.setting = named("counted"), .outcome = Outcome::over_budget, .error = off_by(0.5 / 255)});
     std::string text = screen(choice, budget_of("0.05/255"));
     CHECK(contains(line_with(text, "NOT MET"), "no less than 0.1000/255 can be proven"));
     CHECK(count_of(text, "--method linked") == 1);
@@ -190,15 +192,15 @@ TEST_CASE("a budget below what can be proven is told apart from one that no sett
     CHECK_FALSE(contains(text, "proven"));
 }
 
-TEST_CASE("how a budget was kept is told where the picture changes, in the budget's terms") {
+TEST_CASE("how a budget was kept is shown where the picture changes, in the budget's terms") {
     const oit::Choice choice = choice_of(linked());
     const auto text_of = [&](const char* text) {
         const oit::Budget budget = budget_of(text);
-        oit::KeptBudget kept = kept_for(choice, budget);
-        kept.add({.changed = true, .checked = true, .errors = choice.errors}, 1, budget);
-        kept.add({.changed = true}, 2, budget);
+        oit::BudgetRecord record = kept_for(choice, budget);
+        record.add({.changed = true, .checked = true, .errors = choice.errors}, 1, budget);
+        record.add({.changed = true}, 2, budget);
         std::ostringstream out;
-        oit::print(choice, budget, kept, out);
+        oit::print(choice, budget, record, out);
         return line_with(out.str(), "kept");
     };
     CHECK_FALSE(contains(screen(choice, budget_of("1/255")), "kept"));
@@ -207,7 +209,7 @@ TEST_CASE("how a budget was kept is told where the picture changes, in the budge
     CHECK(contains(text_of("40dB"), "the worst has 54.2 dB at least"));
 }
 
-TEST_CASE("the bound of an early end is told once, and that of the survey where there is one") {
+TEST_CASE("the bound of an early end is shown once, and that of the survey where there is one") {
     oit::Report report;
     report.options.quality.epsilon = 0.1F;
     const auto text_of = [&] {

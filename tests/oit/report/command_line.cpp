@@ -113,7 +113,7 @@ TEST_CASE("bad arguments are refused") {
     program.require_refused(".", "folder");
 }
 
-TEST_CASE("a machine without OpenCL is told so") {
+TEST_CASE("a machine without OpenCL is reported") {
     const Program program = oit_program();
     program.require_refused("knot.obj", "no OpenCL device",
                             "OCL_ICD_VENDORS=/nonexistent OCL_ICD_FILENAMES=");
@@ -126,12 +126,13 @@ TEST_CASE("arguments that start with a minus and extreme ones are accepted") {
          {"--view -30,-10", "--size 1x1", "--size 3x200", "--alpha 0", "--alpha 1",
           "--layers 4294967295", "--view 0,90 --opaque-floor", "--view 0,-90 --opaque-floor"}) {
         INFO(arguments);
-        const Outcome outcome =
+        const ProgramResult result =
             program.run("knot.obj --frames 1 --out a.png --size 40x30 " + arguments);
         // An option that is given twice is refused by the parser, so sizes replace the default.
-        const Outcome again = contains(arguments, "--size")
-                                  ? program.run("knot.obj --frames 1 --out a.png " + arguments)
-                                  : outcome;
+        const ProgramResult again =
+            contains(arguments, "--size")
+                ? program.run("knot.obj --frames 1 --out a.png " + arguments)
+                : result;
         INFO(again.error);
         CHECK(again.exit_code == 0);
     }
@@ -141,15 +142,15 @@ TEST_CASE("scenes with nothing to blend, or with nothing at all, are drawn") {
     const Program program = oit_program();
     for (const std::string scene : {"extreme-nothing", "extreme-opaque", "extreme-nan"}) {
         INFO(scene);
-        const Outcome outcome =
+        const ProgramResult result =
             program.run(scene + " --size 40x30 --frames 1 --reference --samples 2 --stereo 0.2");
-        INFO(outcome.error);
-        CHECK(outcome.exit_code == 0);
-        CHECK(contains(outcome.out, "0 of 2,400 pixels"));
+        INFO(result.error);
+        CHECK(result.exit_code == 0);
+        CHECK(contains(result.out, "0 of 2,400 pixels"));
     }
 }
 
-TEST_CASE("the user's function is read from a file, and its failures are told") {
+TEST_CASE("the user's function is read from a file, and its failures are shown") {
     const Program program = oit_program();
     const std::string head =
         "static void blend(const OitFragment* fragment, float distance, float3* colour,\n"
@@ -158,7 +159,7 @@ TEST_CASE("the user's function is read from a file, and its failures are told") 
     (void)program.folder().write("nan.cl", head + "*colour = NAN; }");
     (void)program.folder().write("bad.cl", head + "*colour = nothing; }");
     const std::string run = "knot.obj --size 64x48 --frames 1 --blend ";
-    const Outcome fine = program.run(run + "fine.cl");
+    const ProgramResult fine = program.run(run + "fine.cl");
     INFO(fine.error);
     CHECK(fine.exit_code == 0);
     CHECK_FALSE(contains(fine.out, "NaN"));
@@ -168,7 +169,7 @@ TEST_CASE("the user's function is read from a file, and its failures are told") 
     program.require_refused("knot.obj --size 64x48 --budget 40dB --blend fine.cl", "--budget");
     program.require_refused("knot.obj --budget ''", "empty");
     CHECK(contains(program.run(run + "nan.cl").out, "NaN"));
-    const Outcome bad = program.run(run + "bad.cl");
+    const ProgramResult bad = program.run(run + "bad.cl");
     CHECK(bad.exit_code == 1);
     CHECK(contains(bad.error, "bad.cl"));
     CHECK(contains(bad.error, "nothing"));

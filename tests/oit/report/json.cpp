@@ -7,7 +7,7 @@
 #include "options.hpp"
 #include "report/frame_json.hpp"
 #include "report/report.hpp"
-#include "tradeoff/figures.hpp"
+#include "tradeoff/metrics.hpp"
 #include "tradeoff/tradeoff_options.hpp"
 
 namespace cellist::test {

@@ -14,10 +14,10 @@ TEST_CASE("the picture, the screen and the JSON agree, and pictures are equal in
     const Program program = oit_program();
     const std::string arguments =
         "knot.obj --size 160x90 --opaque-floor --reference --frames 1 --json a.json --out ";
-    const Outcome outcome = program.run(arguments + "a.png");
-    INFO(outcome.error);
-    REQUIRE(outcome.exit_code == 0);
-    CHECK(outcome.error.empty());
+    const ProgramResult result = program.run(arguments + "a.png");
+    INFO(result.error);
+    REQUIRE(result.exit_code == 0);
+    CHECK(result.error.empty());
     const std::string json = read_file(program.folder() / "a.json");
     for (const std::string key :
          {"scene", "method", "device", "driver", "width", "height", "triangles", "fragments",
@@ -26,9 +26,9 @@ TEST_CASE("the picture, the screen and the JSON agree, and pictures are equal in
         INFO(key);
         CHECK(contains(json, "\"" + key + "\""));
     }
-    CHECK(contains(outcome.out, "1,280"));
+    CHECK(contains(result.out, "1,280"));
     CHECK(contains(json, "\"triangles\": 1280"));
-    CHECK(contains(outcome.out, "a.png"));
+    CHECK(contains(result.out, "a.png"));
     REQUIRE(program.run(arguments + "b.png").exit_code == 0);
     const std::string first = read_file(program.folder() / "a.png");
     CHECK(first.starts_with("\x89PNG"));
@@ -37,27 +37,26 @@ TEST_CASE("the picture, the screen and the JSON agree, and pictures are equal in
 
 TEST_CASE("fewer layers are compared with all, and with as many") {
     const Program program = oit_program();
-    const auto figures = [&](const std::string& arguments) {
-        const Outcome outcome = program.run(
+    const auto metrics = [&](const std::string& arguments) {
+        const ProgramResult result = program.run(
             "knot.obj --size 160x90 --frames 1 --reference --out a.png --json a.json " + arguments);
-        INFO(outcome.error);
-        REQUIRE(outcome.exit_code == 0);
-        CHECK(contains(outcome.out, "dB against all layers"));
-        return std::pair(outcome.out,
-                         nlohmann::json::parse(read_file(program.folder() / "a.json")));
+        INFO(result.error);
+        REQUIRE(result.exit_code == 0);
+        CHECK(contains(result.out, "dB against all layers"));
+        return std::pair(result.out, nlohmann::json::parse(read_file(program.folder() / "a.json")));
     };
-    const auto [text, one] = figures("--layers 1");
+    const auto [text, one] = metrics("--layers 1");
     CHECK(contains(text, "dB against the 1 nearest layer in double precision"));
     CHECK(one["psnr_db"] < 40);
     CHECK(one["nearest_layers"]["psnr_db"] > 100);
     for (const std::string arguments : {"", "--layers all", "--method kbuffer:1"}) {
         INFO(arguments);
-        const auto [other_text, other] = figures(arguments);
+        const auto [other_text, other] = metrics(arguments);
         CHECK_FALSE(contains(other_text, "nearest layer in double precision"));
         CHECK(other["nearest_layers"].is_null());
         CHECK((other["psnr_db"] > 100) == (arguments != "--method kbuffer:1"));
     }
-    const auto [exact_text, exact] = figures("--layers 1000");
+    const auto [exact_text, exact] = metrics("--layers 1000");
     CHECK(exact["psnr_db"] == exact["nearest_layers"]["psnr_db"]);
 }
 
@@ -80,7 +79,7 @@ TEST_CASE("the screen tells only what the method has") {
     CHECK(contains(read_file(program.folder() / "a.json"), "\"sort_blend\": null"));
 }
 
-TEST_CASE("without a reference, its figures are null") {
+TEST_CASE("without a reference, its metrics are null") {
     const Program program = oit_program();
     REQUIRE(program.run("knot.obj --size 32x32 --frames 1 --json a.json --out a.png").exit_code ==
             0);

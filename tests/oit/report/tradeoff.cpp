@@ -6,7 +6,7 @@
 #include "camera.hpp"
 #include "oit/support/program.hpp"
 #include "report/frame_json.hpp"
-#include "tradeoff/figures.hpp"
+#include "tradeoff/metrics.hpp"
 #include "tradeoff/page.hpp"
 
 namespace cellist::test {
@@ -76,7 +76,7 @@ TEST_CASE("a front is not of settings that were fastest by chance") {
     CHECK(oit::pareto_front(std::vector{plain, lucky, faster}) == std::vector{true, false, true});
 }
 
-TEST_CASE("a relation of times whose spreads overlap is not told") {
+TEST_CASE("times whose spreads overlap are not distinct") {
     oit::Sweep noisy = sweep();
     noisy.measurements[1].add({2, 4});
     noisy.measurements[2] = measured({}, 2, 120, "counted");
@@ -86,13 +86,13 @@ TEST_CASE("a relation of times whose spreads overlap is not told") {
     CHECK(exact[1].factor < 0.7);
     CHECK(exact[1].least < exact[1].factor);
     CHECK(exact[1].most > 1);
-    CHECK_FALSE(exact[1].told);
+    CHECK_FALSE(exact[1].is_distinct);
     std::ostringstream out;
     print(noisy, out);
     CHECK(contains(out.str(), "counted  not significant"));
-    const json figures = json::parse(oit::dump(to_json(noisy), 2));
-    CHECK(figures["exact_methods"][1]["told_apart"] == false);
-    CHECK(oit::exact_methods(sweep())[1].told);
+    const json metrics = json::parse(oit::dump(to_json(noisy), 2));
+    CHECK(metrics["exact_methods"][1]["told_apart"] == false);
+    CHECK(oit::exact_methods(sweep())[1].is_distinct);
 }
 
 TEST_CASE("pixels are counted by layers: none, 1, 2 to 3, 4 to 7 and so on") {
@@ -146,19 +146,19 @@ TEST_CASE("base64 is that of RFC 4648") {
         CHECK(oit::base64(bytes) == text);
 }
 
-TEST_CASE("figures are read from JSON as they were") {
-    const json figures = json::parse(oit::dump(to_json(sweep()), 2));
-    CHECK(figures["scene"] == "<script><b>\"&',.obj");
-    CHECK(figures["alpha"] == 0.35);
-    CHECK(figures["settings"].size() == 4);
-    CHECK(figures["settings"][0]["layers"] == 8);
-    CHECK(figures["settings"][0]["psnr_db"] == 13.5);
-    CHECK(figures["settings"][0]["pareto"] == true);
-    CHECK(figures["settings"][1]["psnr_db"].is_null());
-    CHECK(figures["settings"][3]["failure"] == "too large, \"by far\"");
-    CHECK(figures["fewer_layers"][0]["speed_up"] == 1.5);
-    CHECK(figures["exact_methods"][1]["times_linked"] == 3);
-    CHECK(figures["left_out"][0]["reason"] == "it cannot");
+TEST_CASE("metrics are read from JSON as they were") {
+    const json metrics = json::parse(oit::dump(to_json(sweep()), 2));
+    CHECK(metrics["scene"] == "<script><b>\"&',.obj");
+    CHECK(metrics["alpha"] == 0.35);
+    CHECK(metrics["settings"].size() == 4);
+    CHECK(metrics["settings"][0]["layers"] == 8);
+    CHECK(metrics["settings"][0]["psnr_db"] == 13.5);
+    CHECK(metrics["settings"][0]["pareto"] == true);
+    CHECK(metrics["settings"][1]["psnr_db"].is_null());
+    CHECK(metrics["settings"][3]["failure"] == "too large, \"by far\"");
+    CHECK(metrics["fewer_layers"][0]["speed_up"] == 1.5);
+    CHECK(metrics["exact_methods"][1]["times_linked"] == 3);
+    CHECK(metrics["left_out"][0]["reason"] == "it cannot");
 }
 
 TEST_CASE("lines of CSV have a field for each name") {
@@ -176,8 +176,8 @@ TEST_CASE("lines of CSV have a field for each name") {
 }
 
 // The page of a sweep, and the JSON that is in it.
-json figures_of(const std::string& page) {
-    const std::string begin = "id=\"figures\">";
+json metrics_of(const std::string& page) {
+    const std::string begin = "id=\"metrics\">";
     const std::size_t from = page.find(begin) + begin.size();
     return json::parse(page.substr(from, page.find("</script>", from) - from));
 }
@@ -205,26 +205,26 @@ TEST_CASE("a page needs no other file, and shows names as text") {
     require_self_contained(page);
     CHECK(contains(page, "&lt;script&gt;&lt;b&gt;&quot;&amp;',.obj"));
     CHECK_FALSE(contains(page, "<b>"));
-    const json figures = figures_of(page);
-    CHECK(figures["scene"] == all.scene_name());
-    CHECK(figures["settings"][2]["picture"] == 0);
-    CHECK(figures["settings"][2]["difference"] == 1);
+    const json metrics = metrics_of(page);
+    CHECK(metrics["scene"] == all.scene_name());
+    CHECK(metrics["settings"][2]["picture"] == 0);
+    CHECK(metrics["settings"][2]["difference"] == 1);
 }
 
 TEST_CASE("a run writes table, JSON, CSV and page") {
     const Program program(CELLIST_TRADEOFF_PROGRAM);
-    const Outcome outcome = program.run(
+    const ProgramResult result = program.run(
         "knot.obj --size 40x30 --methods weighted,moments --frames 4 --json a.json --csv a.csv "
         "--html a.html --stereo 0.1");
-    INFO(outcome.error);
-    REQUIRE(outcome.exit_code == 0);
-    CHECK(count_of(outcome.error, "\n") == 2);
-    CHECK(contains(outcome.out, "--method moments"));
-    const json figures = json::parse(read_file(program.folder() / "a.json"));
-    CHECK(figures["scene"] == "knot.obj");
-    CHECK(figures["eyes"] == 2);
-    REQUIRE(figures["settings"].size() == 2);
-    for (const json& setting : figures["settings"]) {
+    INFO(result.error);
+    REQUIRE(result.exit_code == 0);
+    CHECK(count_of(result.error, "\n") == 2);
+    CHECK(contains(result.out, "--method moments"));
+    const json metrics = json::parse(read_file(program.folder() / "a.json"));
+    CHECK(metrics["scene"] == "knot.obj");
+    CHECK(metrics["eyes"] == 2);
+    REQUIRE(metrics["settings"].size() == 2);
+    for (const json& setting : metrics["settings"]) {
         CHECK(setting["ms"] > 0);
         CHECK(setting["frames"] == 4);
         CHECK(setting["lower_quartile_ms"] <= setting["ms"]);
@@ -233,12 +233,12 @@ TEST_CASE("a run writes table, JSON, CSV and page") {
         CHECK(setting["ssim"] > 0.5);
     }
     // Which ones depends on times.
-    CHECK(std::ranges::any_of(figures["settings"],
+    CHECK(std::ranges::any_of(metrics["settings"],
                               [](const json& setting) { return setting["pareto"] == true; }));
     CHECK(count_of(read_file(program.folder() / "a.csv"), "\n") == 3);
     const std::string page = read_file(program.folder() / "a.html");
     require_self_contained(page);
-    CHECK(figures_of(page)["pictures"].size() == 5);
+    CHECK(metrics_of(page)["pictures"].size() == 5);
 }
 
 TEST_CASE("what cannot be compared is refused in a line") {

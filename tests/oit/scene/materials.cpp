@@ -120,8 +120,8 @@ TEST_CASE("colours and opacities of vertices are factors, as in double precision
         const oit::Frame frame{.scene = scene,
                                .views = {support::frame_unit_sphere({20, 15}, 160, 120)}};
         oit::Renderer renderer(device(), frame);
-        CHECK(renderer.needs().tints);
-        CHECK(renderer.needs().opacities == !own);
+        CHECK(renderer.features().tints);
+        CHECK(renderer.features().opacities == !own);
         renderer.draw();
         const oit::Comparison comparison =
             oit::compare(oit::draw_reference(frame), renderer.image(), renderer.method().depths());
@@ -232,8 +232,8 @@ TEST_CASE("a floor is drawn from above only, with a shadow of the size of what s
         add_square(mesh, width, 0.3F, {});
         oit::Scene scene = oit::scene_of(mesh, 0.35F);
         oit::add_floor(scene);
-        CHECK(std::abs(scene.look.floor_shadow_radius[0] - 1.25F * width) < 1e-5F);
-        CHECK(std::abs(scene.look.floor_shadow_centre[1] - 0.3F) < 1e-5F);
+        CHECK(std::abs(scene.lighting.floor_shadow_radius[0] - 1.25F * width) < 1e-5F);
+        CHECK(std::abs(scene.lighting.floor_shadow_centre[1] - 0.3F) < 1e-5F);
     }
 }
 

@@ -48,7 +48,7 @@ void require_sound(const oit::Scene& scene) {
         const support::Mesh& mesh = scene.models[instance.model].mesh;
         for (const double time : {0.0, 3.7})
             for (const glm::vec3& p : mesh.positions) {
-                const glm::dvec4 q = place_at(instance, time) * glm::dvec4(glm::dvec3(p), 1);
+                const glm::dvec4 q = transform_at(instance, time) * glm::dvec4(glm::dvec3(p), 1);
                 REQUIRE(glm::length(glm::dvec3(q)) <= 1.0001);
             }
         for (const auto& t : mesh.triangles) {

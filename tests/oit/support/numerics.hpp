@@ -45,7 +45,7 @@ inline constexpr std::array<Extreme, 9> extremes{{
 }};
 
 /// Errors are of linear colours, as parts of the brightest that a fragment of the frame can have.
-struct ColourFigures {
+struct ColourMetrics {
     std::uint64_t layers = 0;  ///< in a pixel, at most
     double bound = 0;
     double error = 0;  ///< largest, over the pixels in which the order of layers is decided
@@ -63,8 +63,8 @@ inline double colour_bound(const oit::Renderer& renderer, std::uint64_t layers) 
     const auto n = static_cast<double>(layers);
     const double shading = 512 * unit, blending = (3 * n + 2) * unit;
     return shading + blending +
-           renderer.layout().colour_error(renderer.needs()) /
-               static_cast<double>(renderer.needs().colour_max) +
+           renderer.layout().colour_error(renderer.features()) /
+               static_cast<double>(renderer.features().colour_max) +
            n * renderer.layout().alpha_error();
 }
 
@@ -76,14 +76,14 @@ inline double swaps(const oit::Renderer& renderer, const oit::Reference& referen
     for (std::size_t i = reference.offsets[pixel]; i < reference.offsets[pixel + 1]; ++i)
         for (std::size_t j = i + 1; j < reference.offsets[pixel + 1]; ++j) {
             if (all[j].depth - all[i].depth >
-                renderer.layout().depth_resolution(renderer.needs()).at(all[j].depth))
+                renderer.layout().depth_resolution(renderer.features()).at(all[j].depth))
                 break;
             sum += oit::swap_error(all[i], all[j]);
         }
     return sum;
 }
 
-inline ColourFigures measure(const Device& device, const Extreme& extreme, oit::NodeFormat format) {
+inline ColourMetrics measure(const Device& device, const Extreme& extreme, oit::NodeFormat format) {
     oit::Scene scene = oit::find_scene(extreme.scene)->make(extreme.alpha);
     for (oit::Material& material : scene.materials)
         for (int c = 0; c < 3; ++c) {
@@ -100,16 +100,16 @@ inline ColourFigures measure(const Device& device, const Extreme& extreme, oit::
     const std::vector<cl_float4> again = renderer.image();
     const oit::Reference reference = oit::draw_reference(frame);
 
-    ColourFigures figures;
-    figures.repeats =
+    ColourMetrics metrics;
+    metrics.repeats =
         std::memcmp(image.data(), again.data(), image.size() * sizeof(cl_float4)) == 0;
     const oit::Comparison comparison = oit::compare(reference, image, renderer.method().depths());
-    figures.pixels_nan = comparison.pixels_nan;
-    figures.other_counts = comparison.pixels_with_other_count;
+    metrics.pixels_nan = comparison.pixels_nan;
+    metrics.other_counts = comparison.pixels_with_other_count;
     for (std::size_t p = 0; p < image.size(); ++p)
-        figures.layers = std::max(figures.layers, reference.offsets[p + 1] - reference.offsets[p]);
-    figures.bound = colour_bound(renderer, figures.layers);
-    const auto brightest = static_cast<double>(renderer.needs().colour_max);
+        metrics.layers = std::max(metrics.layers, reference.offsets[p + 1] - reference.offsets[p]);
+    metrics.bound = colour_bound(renderer, metrics.layers);
+    const auto brightest = static_cast<double>(renderer.features().colour_max);
     for (std::size_t p = 0; p < image.size(); ++p) {
         double error = 0;
         for (int c = 0; c < 3; ++c)
@@ -117,16 +117,16 @@ inline ColourFigures measure(const Device& device, const Extreme& extreme, oit::
                 error,
                 std::abs(static_cast<double>(image[p].s[c]) - reference.image[p][c]) / brightest);
         if (!reference.ambiguous[p]) {
-            figures.error = std::max(figures.error, error);
+            metrics.error = std::max(metrics.error, error);
             continue;
         }
-        ++figures.undecided;
-        figures.undecided_error = std::max(figures.undecided_error, error);
-        figures.undecided_used =
-            std::max(figures.undecided_used,
-                     error / (figures.bound + swaps(renderer, reference, p) / brightest));
+        ++metrics.undecided;
+        metrics.undecided_error = std::max(metrics.undecided_error, error);
+        metrics.undecided_used =
+            std::max(metrics.undecided_used,
+                     error / (metrics.bound + swaps(renderer, reference, p) / brightest));
     }
-    return figures;
+    return metrics;
 }
 
 // ---- depths --------------------------------------------------------------------------------------
@@ -146,10 +146,10 @@ inline constexpr std::array<DepthCase, 6> depth_cases{{
     {"16 bits, reversed", oit::NodeFormat::rgb565_d16, oit::DepthScale::reversed},
 }};
 
-/// Depths at which the document says what is told apart.
+/// Depths at which the document says what is resolved.
 inline constexpr std::array<double, 5> shown_depths{1e-3, 1, 1e2, 1e4, 1e6};
 
-struct DepthFigures {
+struct DepthMetrics {
     std::array<double, shown_depths.size()> gaps{};  ///< depths that far apart have an order
     double used = 0;  ///< the largest error of a depth, as a part of its bound
     std::uint64_t fragments = 0;
@@ -198,7 +198,7 @@ inline oit::Scene sheets_of_all_depths() {
     return scene;
 }
 
-inline DepthFigures measure(const Device& device, const DepthCase& depth_case) {
+inline DepthMetrics measure(const Device& device, const DepthCase& depth_case) {
     const oit::Scene scene = sheets_of_all_depths();
     const oit::Frame frame{
         .scene = scene,
@@ -209,31 +209,31 @@ inline DepthFigures measure(const Device& device, const DepthCase& depth_case) {
     const oit::Reference reference = oit::draw_reference(frame);
     const std::optional<oit::StoredDepths> stored = renderer.method().depths();
 
-    DepthFigures figures;
+    DepthMetrics metrics;
     const auto resolution = [&](double depth) {
-        return renderer.layout().depth_resolution(renderer.needs()).at(depth);
+        return renderer.layout().depth_resolution(renderer.features()).at(depth);
     };
     for (std::size_t i = 0; i < shown_depths.size(); ++i)
-        figures.gaps[i] = resolution(shown_depths[i]);
+        metrics.gaps[i] = resolution(shown_depths[i]);
     for (std::size_t p = 0; p < reference.image.size(); ++p) {
         const std::uint64_t at = reference.offsets[p];
         if (reference.offsets[p + 1] != at + 1 || stored->offsets[p + 1] != stored->offsets[p] + 1)
             continue;
-        ++figures.fragments;
+        ++metrics.fragments;
         const double depth = reference.fragments[at].depth,
                      found = stored->depths[stored->offsets[p]];
-        // What is told apart is twice the error of one. Inverse depths have even steps if reversed.
+        // What is resolved is twice the error of one. Inverse depths have even steps if reversed.
         const bool reversed = depth_case.scale == oit::DepthScale::reversed;
         const double error = reversed ? std::abs(1 / found - 1 / depth) : std::abs(found - depth);
         const double bound = resolution(depth) / 2 / (reversed ? depth * depth : 1);
-        figures.used = std::max(figures.used, error / bound);
+        metrics.used = std::max(metrics.used, error / bound);
     }
-    return figures;
+    return metrics;
 }
 
 // ---- the tables ----------------------------------------------------------------------------------
 
-inline std::string figure(double value) {
+inline std::string short_number(double value) {
     if (value == 0) return "0";
     std::ostringstream text;
     text.precision(1);
@@ -243,16 +243,16 @@ inline std::string figure(double value) {
 
 /// The first cells of a line of the table of colours: what does not depend on the device.
 inline std::string colour_line(const Extreme& extreme, std::string_view format,
-                               const ColourFigures& figures) {
-    return "| " + std::string(extreme.name) + " | " + std::to_string(figures.layers) + " | `" +
-           std::string(format) + "` | " + figure(figures.bound) + " | ";
+                               const ColourMetrics& metrics) {
+    return "| " + std::string(extreme.name) + " | " + std::to_string(metrics.layers) + " | `" +
+           std::string(format) + "` | " + short_number(metrics.bound) + " | ";
 }
 
 /// The same of the table of depths.
-inline std::string depth_line(const DepthCase& depth_case, const DepthFigures& figures) {
+inline std::string depth_line(const DepthCase& depth_case, const DepthMetrics& metrics) {
     std::string line = "| " + std::string(depth_case.name) + " | ";
     for (std::size_t i = 0; i < shown_depths.size(); ++i)
-        line += (figures.gaps[i] < shown_depths[i] ? figure(figures.gaps[i]) : "all") + " | ";
+        line += (metrics.gaps[i] < shown_depths[i] ? short_number(metrics.gaps[i]) : "all") + " | ";
     return line;
 }
 

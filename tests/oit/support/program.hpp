@@ -13,7 +13,7 @@
 
 namespace cellist::test {
 
-struct Outcome {
+struct ProgramResult {
     int exit_code;
     std::string out;
     std::string error;
@@ -27,8 +27,8 @@ public:
           mesh_(folder_.write("knot.obj", obj_text(torus_knot(2, 3, 80, 8)))) {}
 
     /// `environment` stands before the program, `arguments` after it.
-    [[nodiscard]] Outcome run(const std::string& arguments,
-                              const std::string& environment = {}) const {
+    [[nodiscard]] ProgramResult run(const std::string& arguments,
+                                    const std::string& environment = {}) const {
         const std::string out = (folder_ / "stdout").string(),
                           error = (folder_ / "stderr").string();
         const std::string command = "cd '" + (folder_ / ".").string() + "' && " + environment +
@@ -41,13 +41,13 @@ public:
     /// Requires that these arguments are refused in one line, which has `named` in it.
     void require_refused(const std::string& arguments, const std::string& named,
                          const std::string& environment = {}) const {
-        const Outcome outcome = run(arguments, environment);
-        INFO(arguments << ": " << outcome.error);
-        CHECK(outcome.exit_code == 1);
-        CHECK(outcome.error.starts_with(std::filesystem::path(path_).filename().string() + ": "));
-        CHECK(count_of(outcome.error, "\n") == 1);
-        CHECK(contains(outcome.error, named));
-        CHECK(outcome.out.empty());
+        const ProgramResult result = run(arguments, environment);
+        INFO(arguments << ": " << result.error);
+        CHECK(result.exit_code == 1);
+        CHECK(result.error.starts_with(std::filesystem::path(path_).filename().string() + ": "));
+        CHECK(count_of(result.error, "\n") == 1);
+        CHECK(contains(result.error, named));
+        CHECK(result.out.empty());
     }
 
     [[nodiscard]] const Folder& folder() const { return folder_; }

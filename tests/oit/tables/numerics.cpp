@@ -20,11 +20,11 @@ std::string colour_table(const cellist::Device& device) {
         "|---|---|---|---|---|---|\n";
     for (const Extreme& extreme : extremes)
         for (const auto& [format, name] : oit::node_formats) {
-            const ColourFigures figures = measure(device, extreme, format);
-            table += colour_line(extreme, name, figures) + figure(figures.error) + " | " +
-                     (figures.undecided == 0 ? std::string("none")
-                                             : std::to_string(figures.undecided) + ", " +
-                                                   figure(figures.undecided_error)) +
+            const ColourMetrics metrics = measure(device, extreme, format);
+            table += colour_line(extreme, name, metrics) + short_number(metrics.error) + " | " +
+                     (metrics.undecided == 0 ? std::string("none")
+                                             : std::to_string(metrics.undecided) + ", " +
+                                                   short_number(metrics.undecided_error)) +
                      " |\n";
         }
     return table;
@@ -35,8 +35,8 @@ std::string depth_table(const cellist::Device& device) {
         "| depth | at 10^-3 | at 1 | at 10^2 | at 10^4 | at 10^6 | largest error |\n"
         "|---|---|---|---|---|---|---|\n";
     for (const DepthCase& depth_case : depth_cases) {
-        const DepthFigures figures = measure(device, depth_case);
-        table += depth_line(depth_case, figures) + figure(figures.used) + " of the bound |\n";
+        const DepthMetrics metrics = measure(device, depth_case);
+        table += depth_line(depth_case, metrics) + short_number(metrics.used) + " of the bound |\n";
     }
     return table;
 }

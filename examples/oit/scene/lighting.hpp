@@ -5,7 +5,7 @@
 namespace oit {
 
 /// Light, floor and background. Colours are linear; directions have length 1.
-struct Look {
+struct Lighting {
     cl_float sky[3];     ///< light from above
     cl_float ground[3];  ///< light from below
     cl_float key[3];     ///< colour of the key light
@@ -23,12 +23,12 @@ struct Look {
     cl_float floor_shadow_centre[2];  ///< x and z
     cl_float floor_shadow_radius[2];  ///< of an ellipse along x and z
 };
-CELLIST_STRUCT(Look, sky, ground, key, key_direction, rim, background_top, background_bottom,
+CELLIST_STRUCT(Lighting, sky, ground, key, key_direction, rim, background_top, background_bottom,
                floor_light, floor_dark, floor_height, floor_square, floor_fade_begin,
                floor_fade_end, floor_shadow, floor_shadow_centre, floor_shadow_radius);
 
-/// The look of the example's pictures, for an object inside of the unit sphere that stands on a
+/// The lighting of the example's pictures, for an object inside of the unit sphere that stands on a
 /// floor at `floor_height`.
-[[nodiscard]] Look studio_look(float floor_height);
+[[nodiscard]] Lighting studio_lighting(float floor_height);
 
 }  // namespace oit

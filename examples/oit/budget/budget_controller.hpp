@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "budget/chooser.hpp"
+#include "budget/budget_search.hpp"
 
 namespace oit {
 
@@ -13,7 +13,7 @@ namespace oit {
 /// those of the last is surveyed and compared; where it is over the budget, a setting is chosen again and
 /// the frame drawn again. With `check_every` N, a check follows N frames of which nothing is known, the
 /// last of them included: for speed, where the picture changes little.
-class Keeper {
+class BudgetController {
 public:
     /// A frame that was drawn.
     struct Drawn {
@@ -29,21 +29,21 @@ public:
     /// Chooses for the frame as it is. Refers to the device and the frame, which must outlive it;
     /// the frame may be given other times, and other views of the same size, between calls of
     /// draw().
-    Keeper(const cellist::Device& device, const Frame& frame, const Budget& budget,
-           std::uint32_t check_every = 1, SearchOptions search = {});
+    BudgetController(const cellist::Device& device, const Frame& frame, const Budget& budget,
+                     std::uint32_t check_every = 1, SearchOptions options = {});
 
     /// Draws the frame as it is now. Blocks.
     Drawn draw();
 
     /// The last choice.
     [[nodiscard]] const Choice& choice() const { return choice_; }
-    [[nodiscard]] Renderer& renderer() const { return chooser_.renderer(); }
+    [[nodiscard]] Renderer& renderer() const { return search_.renderer(); }
 
 private:
     void choose();
     [[nodiscard]] bool has_changed() const;
 
-    Chooser chooser_;
+    BudgetSearch search_;
     Budget budget_;
     std::uint32_t check_every_;
     bool is_first_ = true;                      ///< the next frame

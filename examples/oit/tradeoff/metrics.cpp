@@ -1,4 +1,4 @@
-#include "tradeoff/figures.hpp"
+#include "tradeoff/metrics.hpp"
 
 #include <cmath>
 #include <iomanip>
@@ -50,8 +50,8 @@ std::string quartiles(const Relation& relation) {
 }
 
 // What a factor is worth.
-std::string untold(const Relation& relation) {
-    return relation.told ? "" : "  not significant: the spreads overlap";
+std::string unresolved(const Relation& relation) {
+    return relation.is_distinct ? "" : "  not significant: the spreads overlap";
 }
 
 void print_fewer_layers(const Sweep& sweep, std::ostream& out) {
@@ -62,7 +62,7 @@ void print_fewer_layers(const Sweep& sweep, std::ostream& out) {
     for (const Relation& relation : relations)
         out << std::setw(11) << *relation.measurement->setting.quality.layers << std::setw(10)
             << fixed(relation.factor, 2) << std::setw(18) << quartiles(relation) << std::setw(9)
-            << decibels(relation.measurement->comparison.psnr_db) << untold(relation) << '\n';
+            << decibels(relation.measurement->comparison.psnr_db) << unresolved(relation) << '\n';
 }
 
 void print_exact_methods(const Sweep& sweep, std::ostream& out) {
@@ -75,7 +75,7 @@ void print_exact_methods(const Sweep& sweep, std::ostream& out) {
         out << std::setw(11) << fixed(m.milliseconds, 2) << std::setw(15)
             << fixed(relation.factor, 2) << std::setw(18) << quartiles(relation) << "  "
             << m.setting.method->name
-            << (m.setting.method->name == "linked" ? "" : untold(relation)) << '\n';
+            << (m.setting.method->name == "linked" ? "" : unresolved(relation)) << '\n';
     }
 }
 
@@ -144,23 +144,23 @@ ordered_json to_json(const Sweep& sweep) {
     for (std::size_t i = 0; i < sweep.measurements.size(); ++i)
         json["settings"].push_back(to_json(sweep.measurements[i], front[i]));
     json["fewer_layers"] = ordered_json::array();
-    for (const auto& [m, factor, least, most, told] : fewer_layers(sweep))
+    for (const auto& [m, factor, least, most, is_distinct] : fewer_layers(sweep))
         json["fewer_layers"].push_back({{"layers", *m->setting.quality.layers},
                                         {"ms", m->milliseconds},
                                         {"speed_up", factor},
                                         {"speed_up_least", least},
                                         {"speed_up_most", most},
-                                        {"told_apart", told},
+                                        {"told_apart", is_distinct},
                                         {"psnr_db", finite_or_null(m->comparison.psnr_db)},
                                         {"ssim", m->comparison.ssim}});
     json["exact_methods"] = ordered_json::array();
-    for (const auto& [m, factor, least, most, told] : exact_methods(sweep))
+    for (const auto& [m, factor, least, most, is_distinct] : exact_methods(sweep))
         json["exact_methods"].push_back({{"method", m->setting.method->name},
                                          {"ms", m->milliseconds},
                                          {"times_linked", factor},
                                          {"times_linked_least", least},
                                          {"times_linked_most", most},
-                                         {"told_apart", told},
+                                         {"told_apart", is_distinct},
                                          {"bytes", m->bytes}});
     json["left_out"] = ordered_json::array();
     for (const auto& [method, reason] : sweep.left_out)
@@ -189,8 +189,8 @@ std::string to_csv(const Sweep& sweep) {
     std::string csv;
     for (const char* name : names) csv += std::string(csv.empty() ? "" : ",") + name;
     csv += '\n';
-    const ordered_json figures = to_json(sweep);
-    for (const ordered_json& setting : figures["settings"]) {
+    const ordered_json metrics = to_json(sweep);
+    for (const ordered_json& setting : metrics["settings"]) {
         std::string line;
         for (const char* name : names) {
             if (name != names[0]) line += ',';

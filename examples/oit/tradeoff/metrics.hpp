@@ -12,7 +12,7 @@ namespace oit {
 /// One screen for people.
 void print(const Sweep& sweep, std::ostream& out);
 
-/// All figures, as docs/json.md says. What is infinite or was not measured is null.
+/// All metrics, as docs/json.md says. What is infinite or was not measured is null.
 [[nodiscard]] nlohmann::ordered_json to_json(const Sweep& sweep);
 
 /// A line for each setting, after a line of names.

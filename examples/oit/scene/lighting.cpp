@@ -1,8 +1,8 @@
-#include "scene/look.hpp"
+#include "scene/lighting.hpp"
 
 namespace oit {
 
-Look studio_look(float floor_height) {
+Lighting studio_lighting(float floor_height) {
     return {
         .sky = {0.42F, 0.50F, 0.60F},
         .ground = {0.05F, 0.05F, 0.07F},

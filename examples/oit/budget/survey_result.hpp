@@ -11,8 +11,8 @@
 namespace oit {
 
 /// What a survey found out about a frame. Errors are upper bounds against the truth; where they do not
-/// say otherwise, apart from what depends on an order of layers that float depths do not tell.
-struct SceneMeasure {
+/// say otherwise, apart from what depends on an order of layers that float depths do not resolve.
+struct SurveyResult {
     /// Blending ends behind the nearest layers, or where little light passes.
     struct Cut {
         std::uint32_t layers = 0;  ///< as Quality::layers; 0 where the end is by epsilon
@@ -29,11 +29,11 @@ struct SceneMeasure {
     std::vector<std::uint64_t> pixels_by_layers;
     float least_alpha = 1;
     float greatest_alpha = 0;
-    /// Pixels where depths as float, with 24 and with 16 bits do not tell an order that matters.
-    std::array<std::uint64_t, 3> pixels_untold{};
+    /// Pixels where depths as float, with 24 and with 16 bits do not resolve an order that matters.
+    std::array<std::uint64_t, 3> pixels_unresolved{};
 
     PictureError exact;             ///< of all layers in float
-    PictureError exact_with_order;  ///< the same, whatever the order that is not told
+    PictureError exact_with_order;  ///< the same, whatever the unresolved order
     /// Of all layers in each format; 1 where nothing better is known.
     std::array<PictureError, node_formats.size()> formats;
     std::vector<Cut> cuts;

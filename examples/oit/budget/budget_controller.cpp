@@ -1,4 +1,4 @@
-#include "budget/keeper.hpp"
+#include "budget/budget_controller.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -15,41 +15,42 @@ bool same_views(const Frame& a, const Frame& b) {
 
 }  // namespace
 
-Keeper::Keeper(const cellist::Device& device, const Frame& frame, const Budget& budget,
-               std::uint32_t check_every, SearchOptions search)
-    : chooser_(device, frame, budget, std::move(search)),
+BudgetController::BudgetController(const cellist::Device& device, const Frame& frame,
+                                   const Budget& budget, std::uint32_t check_every,
+                                   SearchOptions options)
+    : search_(device, frame, budget, std::move(options)),
       budget_(budget),
       check_every_(check_every),
       now_(frame) {
     choose();
 }
 
-void Keeper::choose() {
-    choice_ = chooser_.choose();
+void BudgetController::choose() {
+    choice_ = search_.run();
     errors_ = choice_.errors;
 }
 
-bool Keeper::has_changed() const {
-    const Frame& frame = chooser_.frame();
+bool BudgetController::has_changed() const {
+    const Frame& frame = search_.frame();
     return frame.time != now_.time || !same_views(frame, now_);
 }
 
-Keeper::Drawn Keeper::draw() {
+BudgetController::Drawn BudgetController::draw() {
     Drawn drawn{.changed = has_changed()};
     drawn.checked = std::exchange(is_first_, false) && !drawn.changed;
-    const Frame& frame = chooser_.frame();
+    const Frame& frame = search_.frame();
     if (drawn.changed) {
         now_.time = frame.time;
         now_.views = frame.views;
         errors_.reset();
-        drawn.frame_ms = chooser_.draw_changed();
+        drawn.frame_ms = search_.draw_changed();
     } else {
         drawn.frame_ms = renderer().draw();
     }
     if (!errors_ && ++unchecked_ >= check_every_) {
         unchecked_ = 0;
         drawn.checked = true;
-        errors_ = chooser_.check();
+        errors_ = search_.check();
         if (!budget_.met_by(*errors_)) {
             choose();
             drawn.chosen_again = true;
