@@ -64,8 +64,9 @@ private:
     void run_long(Sort& sort, const char* name, const Range& range, const Arguments& arguments);
     void adopt(Sort& sort);
     [[nodiscard]] std::size_t first_class(const Sort& sort) const;
-    [[nodiscard]] std::uint64_t most_left(const Sort& sort) const;
+    [[nodiscard]] std::uint64_t most_left(const Sort& sort, const SortTuning& tuning) const;
 
+    [[nodiscard]] bool make_state(const Sort& sort);
     void clear_state();
     void read_state(Sort& sort) const;
     void check_nodes(const Sort& sort) const;
@@ -75,8 +76,8 @@ private:
     MemoryOwner device_;
     RecordKernels& kernels_;
     cl_device_type device_type_;
-    Memory state_;
-    std::array<Memory, 2> cells_;  ///< whose lists each class leaves, by turns
+    Memory state_;                 ///< none before the first sort that has room for it
+    std::array<Memory, 2> cells_;  ///< whose lists each class leaves, alternating
     std::array<cl_uint, CELLIST_SORT_CLASSES> in_class_{};  ///< lists of the last sort
 };
 

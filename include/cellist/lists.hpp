@@ -284,8 +284,7 @@ public:
     /// Nodes in the pool.
     [[nodiscard]] std::uint64_t capacity_nodes() const { return core_->capacity_nodes(); }
     /// Device memory of every buffer that the container keeps: heads, nodes, counters, and the
-    /// buffers that sorts, downloads and builds keep for reuse. budget_bytes bounds it, except for
-    /// sums over the cells: 20 bytes for each 4,096 cells, and some hundred bytes.
+    /// buffers that sorts, downloads and builds keep for reuse. budget_bytes bounds it.
     [[nodiscard]] std::uint64_t pool_bytes() const { return core_->pool_bytes(); }
     /// The storage in use: in Storage::automatic the one of the last build.
     [[nodiscard]] Storage storage() const { return core_->storage_in_use(); }

@@ -24,8 +24,8 @@ enum class Order { ascending, descending };
 enum class Storage {
     /// One pass: a node from the pool, linked to its cell. Reading follows links.
     linked,
-    /// Two passes over the same kernel, count and fill. The lists lie behind one another: reading
-    /// is fast, and the pool holds exactly the records. The kernel must insert as many records into
+    /// Two passes over the same kernel, count and fill. The lists are contiguous: reading is
+    /// fast, and the pool holds exactly the records. The kernel must insert as many records into
     /// each cell both times. Processors under PoCL take one pass where they can, with as much
     /// memory again as linked takes.
     counted,
@@ -101,8 +101,8 @@ struct ListsOptions {
     /// Slots for each cell in Storage::fixed at first: 4 under Overflow::grow, which raises it to
     /// the longest list; the other policies need it.
     std::optional<std::uint32_t> slots = {};
-    /// Device memory that heads, nodes and counters may take together, and what sorts and builds
-    /// keep of any length. The fixed state of a sort, some 60 bytes, comes on top.
+    /// The most device memory that the container keeps: heads, nodes, counters, and the buffers that
+    /// sorts, downloads and builds keep for reuse. See Lists::pool_bytes().
     std::uint64_t budget_bytes = std::numeric_limits<std::uint64_t>::max();
     /// For Storage::automatic: how often kernels read all lists after each build.
     std::uint32_t expected_reads = 1;
