@@ -2,8 +2,8 @@
 //
 //   found   2   in and out: at least the length of the longest list; nothing of use
 //
-// One work-item a cell; the range is padded to whole work-groups. A list is left after `most` records.
-// The host defines CELLIST_WORD, the largest of uchar and uint that divides the record.
+// One work-item a cell; the range is padded to whole work-groups. A list is left after `most`
+// records. The host defines CELLIST_WORD, the largest of uchar and uint that divides the record.
 #include <cellist/lists.clh>
 
 kernel void cellist_traverse(CELLIST_LISTS(CELLIST_RECORD, lists), uint most,
@@ -15,7 +15,8 @@ kernel void cellist_traverse(CELLIST_LISTS(CELLIST_RECORD, lists), uint most,
     cellist_for_each(lists, cell, node) {
         if (length == most) break;
         global const CELLIST_WORD* words = (global const CELLIST_WORD*)&cellist_get(lists, node);
-        for (uint i = 0; i < sizeof(struct CELLIST_RECORD) / sizeof(CELLIST_WORD); ++i) sum += words[i];
+        for (uint i = 0; i < sizeof(struct CELLIST_RECORD) / sizeof(CELLIST_WORD); ++i)
+            sum += words[i];
         ++length;
     }
     // The read is a hint that saves most atomics.

@@ -27,8 +27,9 @@ public:
     /// Enqueues the reading of the totals of the last sum(): `totals` has them once the event has
     /// completed.
     [[nodiscard]] PendingRead read_later(Totals& totals) const;
-    /// Writes the offsets of the lists, none over `capacity_nodes`: one a cell, and the end of the last
-    /// list. They may take the place of the counts. Follows a sum() of the same counts without a limit.
+    /// Writes the offsets of the lists, none over `capacity_nodes`: one a cell, and the end of the
+    /// last list. They may take the place of the counts. Follows a sum() of the same counts without
+    /// a limit.
     void write_offsets(const cl::Buffer& heads, const cl::Buffer& offsets,
                        std::uint64_t capacity_nodes);
 

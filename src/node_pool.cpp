@@ -25,7 +25,8 @@ cl_uint shard_bits_for(std::uint64_t capacity_nodes) {
     return bits;
 }
 
-/// Elements of the shards' buffer: shards, the pool's state, blocks of threads and the table of threads.
+/// Elements of the shards' buffer: shards, the pool's state, blocks of threads and the table of
+/// threads.
 std::uint64_t elements_with(cl_uint shard_bits, cl_uint thread_slots) {
     return (std::uint64_t{1} << shard_bits) + 1 + thread_slots +
            thread_slots * sizeof(cl_ulong) / sizeof(cellist_shard);
@@ -100,8 +101,8 @@ bool NodePool::allows(std::uint64_t all_bytes) const {
            std::min(budget_bytes_, device_->info.global_memory_bytes);
 }
 
-/// Where the pool does not grow it holds exactly what the options say: no thread may have free nodes for
-/// itself. Nor where that would take more memory than there may be.
+/// Where the pool does not grow it holds exactly what the options say: no thread may have free
+/// nodes for itself. Nor where that would take more memory than there may be.
 cl_uint NodePool::thread_slots_with(std::uint64_t capacity_nodes) const {
     if (!layout_.is_linked || !device_->info.one_thread_per_work_group ||
         overflow_ != Overflow::grow)

@@ -38,8 +38,8 @@ private:
     cl_uint thread_slots_ = 0;
 };
 
-/// The memory of a storage: heads, nodes and counters (allocation.clh), within the budget. The pool grows
-/// by the overflow policy.
+/// The memory of a storage: heads, nodes and counters (allocation.clh), within the budget. The pool
+/// grows by the overflow policy.
 class NodePool {
 public:
     struct Layout {
@@ -49,8 +49,8 @@ public:
         bool is_linked = false;  ///< heads move with the nodes, and threads may have blocks
     };
 
-    /// The heads alone; `container` owns what counts towards the same budget. Throws Error if a size exceeds
-    /// a limit.
+    /// The heads alone; `container` owns what counts towards the same budget. Throws Error if a
+    /// size exceeds a limit.
     NodePool(const MemoryOwner& container, const Shape& shape, const ListsOptions& options,
              const Layout& layout);
 
@@ -88,16 +88,16 @@ public:
     void allocate(std::uint64_t capacity_nodes);
     /// The same for a slice of so many cells. Throws OverflowError if a limit forbids it.
     void allocate_for_slice(std::uint64_t capacity_nodes, std::uint64_t cells);
-    /// The same for what a build demands. Throws OverflowError where builds demand more in every pass: the
-    /// kernel does not repeat itself.
+    /// The same for what a build demands. Throws OverflowError where builds demand more in every
+    /// pass: the kernel does not repeat itself.
     void grow(std::uint64_t capacity_nodes, const BuildReport& report);
     /// A build begins: it may grow the pool a number of times.
     void start_build() { growths_ = 0; }
 
     /// Gives the nodes' memory back.
     void release() noexcept;
-    /// Allocates again what release() gave back, if the pool does not grow with the records. True if a pool
-    /// that grows has no nodes, or shall have none.
+    /// Allocates again what release() gave back, if the pool does not grow with the records. True
+    /// if a pool that grows has no nodes, or shall have none.
     [[nodiscard]] bool recover(bool without_nodes);
 
     // ---- buffers
@@ -116,11 +116,11 @@ public:
         Memory nodes;
         Memory heads;
     };
-    /// Makes it the first time, and keeps it as long as the pool. Null where the budget or the device
-    /// has no room for it.
+    /// Makes it the first time, and keeps it as long as the pool. Null where the budget or the
+    /// device has no room for it.
     [[nodiscard]] const BackBuffer* back_buffer();
-    /// Swaps the nodes and heads with those of the back buffer: linked lists have moved, and nothing else is
-    /// in the pool.
+    /// Swaps the nodes and heads with those of the back buffer: linked lists have moved, and
+    /// nothing else is in the pool.
     void swap_back_buffer() noexcept;
 
     /// Sets the fields of the view that say what the pool has.

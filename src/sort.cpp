@@ -44,8 +44,8 @@ bool is_member(const SortKey& key) {
            std::all_of(key.expression.begin() + prefix.size(), key.expression.end(), in_name);
 }
 
-/// An expression of `record`, rewritten to read the record through a pointer. A private copy of a large
-/// record would take too much memory.
+/// An expression of `record`, rewritten to read the record through a pointer. A private copy of a
+/// large record would take too much memory.
 std::string of_pointer(std::string_view expression) {
     std::string text;
     char before = ' ';  // the last character that is no blank
@@ -64,8 +64,8 @@ std::string of_pointer(std::string_view expression) {
 /// Defines cellist_sort_key.
 std::string key_function(const SortKey& key) {
     const std::string type = key.bits == 32 ? "uint" : "ulong";
-    // Where clang knows that a value is undefined, it is an error: the sort around it would be undefined
-    // as well.
+    // Where clang knows that a value is undefined, it is an error: the sort around it would be
+    // undefined as well.
     return "#ifdef __clang__\n#pragma clang diagnostic push\n"
            "#pragma clang diagnostic error \"-Wdivision-by-zero\"\n"
            "#pragma clang diagnostic error \"-Warray-bounds\"\n#endif\n"
@@ -78,8 +78,8 @@ std::string key_function(const SortKey& key) {
            "\n); }\n#ifdef __clang__\n#pragma clang diagnostic pop\n#endif\n";
 }
 
-/// The type of the pieces in which large nodes move: the widest vector whose size divides a node. Empty for
-/// small nodes, which move whole.
+/// The type of the pieces in which large nodes move: the widest vector whose size divides a node.
+/// Empty for small nodes, which move whole.
 std::string piece_type(std::size_t node_bytes) {
     constexpr std::size_t whole_max = 256;
     if (node_bytes <= whole_max) return {};
@@ -198,8 +198,9 @@ void ListSorter::sort_in_place(Sort& sort) {
                  &sort.done);
 }
 
-/// True if the top k records of every list are its first nodes then. False if lists are to be sorted:
-/// because that takes less time, or there are long lists, or k is more than a work-item keeps.
+/// True if the top k records of every list are its first nodes then. False if lists are to be
+/// sorted: because that takes less time, or there are long lists, or k is more than a work-item
+/// keeps.
 bool ListSorter::select_top_k(Sort& sort, std::uint32_t top_k) {
     if (!sort.plan.top_k_pays(top_k, sort.storage.stored() / sort.storage.cells())) return false;
     const SortTuning tuning = sort.plan.of_top_k(top_k);

@@ -27,8 +27,11 @@ public:
 /// Whether a kernel may insert into a container.
 enum class Inserts { refused, accepted };
 
-/// How a container keeps its nodes: a pool, and the passes of a build. One class a storage; each has a file
-/// for the device in kernels/cellist/.
+/// How a container keeps its nodes: a pool, and the passes of a build. One class a storage.
+///
+/// A new storage adds a class of its own and a file in kernels/cellist/, and a row in each of five
+/// places: Storage (options.hpp), make_storage (storage.cpp), the modes (view.h), the library's text
+/// (kernel.cpp), and CELLIST_CALL_STORAGE with CELLIST_DEFINE_RECORD (lists.clh).
 class ListStorage {
 public:
     virtual ~ListStorage() = default;
@@ -38,31 +41,34 @@ public:
     /// Empties the lists. Does not block.
     virtual void clear() = 0;
 
-    /// A build is start(), then passes until review() says that the lists are complete; see build.cpp.
-    /// More passes may follow, where another container needs them: they fill the lists anew.
+    /// A build is start(), then passes until review() says that the lists are complete; see
+    /// build.cpp. More passes may follow, where another container needs them: they fill the lists
+    /// anew.
     virtual void start();
     /// Enqueues what the next run of the kernels needs. Does not block.
     virtual void begin_pass() { clear(); }
     /// Enqueues what follows a run of the kernels, the reading of its counters above all. True if
     /// another pass must follow that needs no review of this one. Does not block.
     virtual bool end_pass() = 0;
-    /// Takes the counters of the last pass into the report, and grows, stops or drops by the options.
-    /// True if the lists are complete. Throws OverflowError; the caller empties the lists then. Blocks.
+    /// Takes the counters of the last pass into the report, and grows, stops or drops by the
+    /// options. True if the lists are complete. Throws OverflowError; the caller empties the lists
+    /// then. Blocks.
     virtual bool review(BuildReport& report) = 0;
     /// Whether a review can change the lists.
     [[nodiscard]] bool may_grow() const { return options_.overflow != Overflow::drop; }
 
     /// Blocks until nothing is on its way to this object's memory. Comes before the destructor.
     void settle() noexcept { reading_.settle(); }
-    /// Gives the nodes' memory back, before another storage takes this one's place. What is left can
-    /// only be destroyed, or be recovered. Blocks as settle() does.
+    /// Gives the nodes' memory back, before another storage takes this one's place. What is left
+    /// can only be destroyed, or be recovered. Blocks as settle() does.
     virtual void release_pool() noexcept;
     /// Makes what a failed build may have left undone, with empty lists. A pool that grows is empty
     /// afterwards if there was none, or if `without_pool` says so.
     void recover(bool without_pool);
 
-    /// Enqueues a check for links, offsets and counts that are inconsistent, or differ from those of the
-    /// last build. Does not block. Call the result once, when that build is finished; that call blocks.
+    /// Enqueues a check for links, offsets and counts that are inconsistent, or differ from those
+    /// of the last build. Does not block. Call the result once, when that build is finished; that
+    /// call blocks.
     [[nodiscard]] virtual std::function<Validation()> validate() = 0;
 
     /// From now on, these cells alone have lists. The lists must be empty.
@@ -75,8 +81,8 @@ public:
     /// Makes room for such lists in the slice, if the policy is to grow. Throws OverflowError.
     virtual void reserve(std::uint64_t total, std::uint64_t longest) = 0;
 
-    /// Enqueues the reading of the inserts since the last clear() that were refused for there was no
-    /// build: low and high word.
+    /// Enqueues the reading of the inserts since the last clear() that were refused for there was
+    /// no build: low and high word.
     [[nodiscard]] PendingRead read_late(std::array<cl_uint, 2>& words) const {
         return pool_.read_late(words);
     }
@@ -136,8 +142,8 @@ protected:
     [[nodiscard]] Memory memory_for_findings() const {
         return {pool_.device().state(), 1, sizeof(cellist_findings), "findings"};
     }
-    /// Enqueues a validating kernel over all cells: (container, arguments..., findings). What it found
-    /// is there when the reading has arrived.
+    /// Enqueues a validating kernel over all cells: (container, arguments..., findings). What it
+    /// found is there when the reading has arrived.
     [[nodiscard]] PendingRead find(Findings& findings, Kernel& kernel,
                                    const Arguments& arguments) const;
 

@@ -217,7 +217,8 @@ std::vector<cl_uint> CountedStorage::counts(BuildReport& report) {
     return words;
 }
 
-/// Enqueues the comparison of the counts with the lists, and of the offsets with the expected offsets.
+/// Enqueues the comparison of the counts with the lists, and of the offsets with the expected
+/// offsets.
 PendingRead CountedStorage::find(Findings& findings, const Memory& offsets) {
     Arguments arguments;
     add_to(arguments, Inserts::refused);
@@ -249,8 +250,8 @@ std::function<Validation()> CountedStorage::validate() {
     check->done = pool_.read(check->counters);
     return [check, expected_of_build = expected_] {
         check->done.wait();
-        // Sound lists that do not add up to what was stored have a wrong end; counts that do not add
-        // up to what was stored and dropped are wrong.
+        // Sound lists that do not add up to what was stored have a wrong end; counts that do not
+        // add up to what was stored and dropped are wrong.
         const cellist_findings& found = check->findings.found;
         const Counters::Sum counters = check->counters.sum();
         const std::uint64_t kept = expected_of_build->stored;

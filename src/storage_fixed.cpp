@@ -100,8 +100,8 @@ std::function<Validation()> FixedStorage::validate() {
     check->done = pool_.read(check->counters);
     return [check, expected = expected_] {
         check->done.wait();
-        // The counts are all that says which slots are in use: they must be those of the build, and add
-        // up to what was stored and to what was dropped.
+        // The counts are all that says which slots are in use: they must be those of the build, and
+        // add up to what was stored and to what was dropped.
         const std::uint64_t stored = check->in_slots.sum;
         const std::uint64_t lost =
             stored > expected->stored ? stored - expected->stored : expected->stored - stored;

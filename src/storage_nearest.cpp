@@ -18,7 +18,8 @@ cl_uint member_index(const RecordType& record, const NearestKey& key) {
     return static_cast<cl_uint>(member - record.members.begin());
 }
 
-/// No list outgrows its slots, so nothing grows, and a build that is reviewed may still change the lists.
+/// No list outgrows its slots, so nothing grows, and a build that is reviewed may still change the
+/// lists.
 ListsOptions without_growth(ListsOptions options) {
     options.overflow = Overflow::stop;
     return options;

@@ -24,8 +24,8 @@ private:
     void make_whole(bool without_nodes) override;
 };
 
-/// Contiguous lists: two passes over the same kernels, count and fill. A single one where the kernels put the
-/// records into partitions first, and the library moves them.
+/// Contiguous lists: two passes over the same kernels, count and fill. A single one where the
+/// kernels put the records into partitions first, and the library moves them.
 class CountedStorage final : public ListStorage {
 public:
     CountedStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options);
@@ -91,9 +91,9 @@ private:
     CellScan::Totals in_slots_;  ///< of the last pass: records in slots, longest list
 };
 
-/// A number of slots for each cell, for the records that come first. Passes over the same kernels: a
-/// threshold pass for a word of their keys, and a selection pass that fills the slots. The next word follows
-/// where that leaves a tie.
+/// A number of slots for each cell, for the records that come first. Passes over the same kernels:
+/// a threshold pass for a word of their keys, and a selection pass that fills the slots. The next
+/// word follows where that leaves a tie.
 class NearestStorage final : public ListStorage {
 public:
     NearestStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options);
