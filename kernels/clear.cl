@@ -1,5 +1,5 @@
-// Sets heads and clears counters before a pass, in one launch: a launch takes longer than clearing a small
-// container does.
+// Sets heads and clears counters before a pass, in one launch: a launch takes longer than clearing
+// a small container does.
 //
 //   heads     first + words   set to `value` from word `first` on
 //   counters  counter_words   set to 0

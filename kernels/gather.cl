@@ -3,9 +3,9 @@
 //   offsets   cells + 1          where each list goes, counted from the first list of all
 //   values    offsets[end] - offsets[begin]   out
 //
-// One work-item for each cell in begin ... end - 1; the range is padded to whole work-groups. The host
-// defines CELLIST_VALUE, which declares a variable for a value, and CELLIST_MEMBER, which selects the value
-// when it follows a record.
+// One work-item for each cell in begin ... end - 1; the range is padded to whole work-groups. The
+// host defines CELLIST_VALUE, which declares a variable for a value, and CELLIST_MEMBER, which
+// selects the value when it follows a record.
 #include <cellist/lists.clh>
 
 // A struct, because arrays are values too, and C assigns no arrays.

@@ -1,9 +1,11 @@
-// The thresholds between the K records of each cell that come first and all others; see nearest.clh.
+// The thresholds between the K records of each cell that come first and all others; see
+// nearest.clh.
 //
 // One work-item a cell; the range is padded to whole work-groups.
 #include <cellist/lists.clh>
 
-// After a threshold pass: the threshold of its word, and how many of the records that equal it are kept.
+// After a threshold pass: the threshold of its word, and how many of the records that equal it are
+// kept.
 kernel void cellist_set_thresholds(CELLIST_LISTS(CELLIST_RECORD, lists)) {
     const cellist_view lists_view = cellist_view_of(lists);
     const uint cell = get_global_id(0);
@@ -21,9 +23,9 @@ kernel void cellist_set_thresholds(CELLIST_LISTS(CELLIST_RECORD, lists)) {
     lists_heads[at] = remaining - less;
 }
 
-// After a selection pass: whether the thresholds decide, and whether the cell has the records that the
-// threshold passes found: those before the thresholds, and as many of their equals as remain. Where the
-// thresholds are no record's, but the end of all words, there may be fewer.
+// After a selection pass: whether the thresholds decide, and whether the cell has the records that
+// the threshold passes found: those before the thresholds, and as many of their equals as remain.
+// Where the thresholds are no record's, but the end of all words, there may be fewer.
 kernel void cellist_check_selection(CELLIST_LISTS(CELLIST_RECORD, lists),
                                     volatile global cellist_selection* selection) {
     const cellist_view lists_view = cellist_view_of(lists);

@@ -1,11 +1,11 @@
-// Moves records from partitions of the cells into contiguous lists. An insert in mode PARTITIONED has left
-// each record in a block of its thread for the partition of its cell, with the cell after it: see
-// counted.clh. A partition is counted and then moved while a core's cache holds it. After Polychroniou and
-// Ross, "A Comprehensive Study of Main-Memory Partitioning", SIGMOD 2014.
+// Moves records from partitions of the cells into contiguous lists. An insert in mode PARTITIONED
+// has left each record in a block of its thread for the partition of its cell, with the cell after
+// it: see counted.clh. A partition is counted and then moved while a core's cache holds it. After
+// Polychroniou and Ross, "A Comprehensive Study of Main-Memory Partitioning", SIGMOD 2014.
 //
 //   thread_slots    of the view of the insert
 //   partitioned     what was the heads of the insert
-//   starts          1 + partitions   the number of records; then where the lists of each partition begin
+//   starts          1 + partitions   the number of records, then where each partition's lists begin
 //
 // A processor runs these: a work-item goes through memory in order, and has a thread for itself.
 #include <cellist/lists.clh>
@@ -38,8 +38,8 @@ kernel void cellist_partition_starts(global const uint* partitioned, uint thread
     starts[0] = at;
 }
 
-// Calls `use` with each node of `partition`: blocks from the last to the first, of one thread after the
-// other. Takes the variables of cellist_move_partition.
+// Calls `use` with each node of `partition`: blocks from the last to the first, of one thread after
+// the other. Takes the variables of cellist_move_partition.
 #define CELLIST_FOR_EACH_PARTITIONED(use)                                                          \
     for (uint slot = 0; slot < thread_slots; ++slot) {                                             \
         const cellist_cursor cursor = cursors[(ulong)slot * partitions + partition];               \
@@ -58,8 +58,8 @@ kernel void cellist_partition_starts(global const uint* partitioned, uint thread
 #define CELLIST_COUNT(node) ++counts[node->next]
 #define CELLIST_MOVE(node) cellist_get(lists, counts[node->next]++) = node->record
 
-// One work-item a partition. Writes nothing where the pool has no room for all records. In between, the
-// counts hold the addresses where records go.
+// One work-item a partition. Writes nothing where the pool has no room for all records. In between,
+// the counts hold the addresses where records go.
 kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cellist_move_partition(
     CELLIST_LISTS(CELLIST_RECORD, lists),
     global const CELLIST_NODE_OF(CELLIST_RECORD) * restrict nodes,

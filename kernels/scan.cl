@@ -1,25 +1,25 @@
 // Sums and prefix sums of the counts of all cells, in blocks.
 //
 //   heads     the counts of the cells, from counts_at on
-//   offsets   cells + 1   out: where lists with these counts begin, none over `capacity`. May be the
+//   offsets   cells + 1   out: where lists with these counts begin, none over `capacity`. May be
 //                         heads, even in the place of the counts
-//   sums      blocks    the sum of min(count, limit) over a block, in 64 bits; then, in its place, the
+//   sums      blocks    the sum of min(count, limit) over a block, in 64 bits; then, in its place,
 //                       sum of all blocks before it
 //   hashes    blocks    the sum of a hash of each cell and its count
 //   maxima    blocks    the largest count of a block
-//   totals    3         out: the sum of min(count, limit) over all cells, the largest count, the sum
+//   totals    3         out: the sum of min(count, limit) over all cells, the largest count, the
 //                       of the hashes
 //
 // A work-group of CELLIST_SCAN_GROUP items has a block of CELLIST_SCAN_GROUP * CELLIST_SCAN_CELLS
-// cells, and there are cells / that + 1 blocks. One work-group sums up the blocks. Barriers stand in
-// uniform control flow.
+// cells, and there are cells / that + 1 blocks. One work-group sums up the blocks. Barriers stand
+// in uniform control flow.
 
 // The host defines CELLIST_SCAN_GROUP, the work-items of a group; a power of two.
 // Cells of a work-item. As in cell_scan.cpp.
 #define CELLIST_SCAN_CELLS 16
 
-// A hash of a cell and its count (the finaliser of MurmurHash3), so that the sum changes if a count moves
-// to another cell. Empty cells add nothing.
+// A hash of a cell and its count (the finaliser of MurmurHash3), so that the sum changes if a count
+// moves to another cell. Empty cells add nothing.
 static inline ulong cellist_count_hash(uint cell, uint count) {
     ulong hash = ((ulong)cell << 32) | count;
     hash = (hash ^ hash >> 33) * 0xFF51AFD7ED558CCDul;

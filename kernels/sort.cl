@@ -1,22 +1,24 @@
 // What the kernels that sort have in common: how nodes lie in memory, and ranking a few of them.
 //
-// The order is that of cellist_sort_key(record), then that of the record's scalars. The host defines
+// The order is that of cellist_sort_key(record), then that of the record's scalars. The host
+// defines
 //
 //   CELLIST_SORT_KEY_BITS   32 or 64, what the key needs
-//   CELLIST_SORT_CHUNK_SIZE  records that are ranked together, a power of two up to 256
+//   CELLIST_SORT_CHUNK_SIZE records that are ranked together, a power of two up to 256
 //   CELLIST_SORT_WIDTH      records that a work-item ranks at once: 4, 8 or 16, at most the slots
 //   CELLIST_SORT_TEAM       work-items that sort a list, a power of two
 //   CELLIST_SORT_ITEMS      work-items that sort together, a power of two. More than one are a
 //                           work-group and share local memory (GPUs); one needs neither (CPUs)
-//   CELLIST_SORT_PIECE      the type of the pieces in which nodes move, if they are too large for private memory
+//   CELLIST_SORT_PIECE      the type of the pieces in which nodes too large for private memory move
 //
-// and after this file cellist_sort_key(pointer to a record), which maps the key to an unsigned integer of
-// the same order. If the user's expression is not an order, its value may differ from call to call. No
-// record is lost then: the code that moves records compares each pair once, or reads stored keys.
+// and after this file cellist_sort_key(pointer to a record), which maps the key to an unsigned
+// integer of the same order. If the user's expression is not an order, its value may differ from
+// call to call. No record is lost then: the code that moves records compares each pair once, or
+// reads stored keys.
 //
-// The rank of a record is the number of records that come before it. Ranking compares all with all: for
-// up to some hundred records this is faster than sorts with fewer comparisons, because it does not
-// branch on what it finds, and reads one key for CELLIST_SORT_WIDTH comparisons.
+// The rank of a record is the number of records that come before it. Ranking compares all with all:
+// for up to some hundred records this is faster than sorts with fewer comparisons, because it does
+// not branch on what it finds, and reads one key for CELLIST_SORT_WIDTH comparisons.
 #include <cellist/lists.clh>
 
 #define CELLIST_SORT_PASTED(a, b) a##b
@@ -97,8 +99,8 @@ static inline void cellist_sort_store(global cellist_sort_node* nodes, uint at, 
 }
 
 #if CELLIST_MODES != CELLIST_LINKED
-// Whether the offsets of a list are impossible. Cells of another slice have no records, whatever their
-// offsets.
+// Whether the offsets of a list are impossible. Cells of another slice have no records, whatever
+// their offsets.
 static inline int cellist_sort_is_broken(volatile global uint* heads, const cellist_view view,
                                          uint cell) {
     const uint begin = cellist_begin(heads, view, cell);
@@ -114,8 +116,8 @@ static inline uint cellist_sort_length(volatile global uint* heads, const cellis
 }
 #endif
 
-// Leaves a list to another class. Sound lists that are longer than a class are no more than `longer` has
-// room for.
+// Leaves a list to another class. Sound lists that are longer than a class are no more than
+// `longer` has room for.
 static inline void cellist_sort_leave(global uint* longer, uint longer_end, uint stage, uint cell,
                                       volatile global cellist_sort_state* state) {
     const uint at = atomic_inc(&state->longer[stage]);
@@ -161,8 +163,8 @@ static inline void cellist_sort_count(CELLIST_SORT_SHARED const cellist_sort_bit
     for (uint n = 0, at = (member)*CELLIST_SORT_WIDTH; n < CELLIST_SORT_RUNS && at < (length);     \
          ++n, at += CELLIST_SORT_TEAM * CELLIST_SORT_WIDTH)
 
-// Finds the ranks of a work-item's records by their keys, and returns the sum of these ranks. The sums
-// over all records add up to length * (length - 1) / 2, or to less if keys are equal.
+// Finds the ranks of a work-item's records by their keys, and returns the sum of these ranks. The
+// sums over all records add up to length * (length - 1) / 2, or to less if keys are equal.
 static inline uint cellist_sort_rank(CELLIST_SORT_SHARED const cellist_sort_bits* keys, uint length,
                                      uint member, uint* ranks) {
     uint sum = 0;
@@ -189,7 +191,8 @@ static inline void cellist_sort_order(const uint* ranks, uint length, uint membe
 }
 
 // The same where keys may be equal: records with equal keys come in the order of records, and equal
-// records stay in theirs. Record i is nodes[first + index[i]], or nodes[first + i] without an index.
+// records stay in theirs. Record i is nodes[first + index[i]], or nodes[first + i] without an
+// index.
 static void cellist_sort_order_equal(global const cellist_sort_node* nodes, uint first,
                                      CELLIST_SORT_SHARED const uint* index,
                                      CELLIST_SORT_SHARED const cellist_sort_bits* keys, uint length,
@@ -213,8 +216,8 @@ static void cellist_sort_order_equal(global const cellist_sort_node* nodes, uint
     }
 }
 
-// Moves the `length` nodes from `first` on into the order that was found, piece by piece. All work-items of
-// the group call it.
+// Moves the `length` nodes from `first` on into the order that was found, piece by piece. All
+// work-items of the group call it.
 static inline void cellist_sort_permute(global cellist_sort_node* nodes, uint first, uint last,
                                         uint length, uint member,
                                         CELLIST_SORT_SHARED const uchar* order) {

@@ -1,9 +1,9 @@
 // Sorts lists of any length where there is no memory for a second pool, one work-item a list. See
 // sort.cl.
 //
-// Linked lists: bottom-up merge sort of the list itself. pending[i] is a sorted list of 2^i nodes or
-// none, and taking a node in works like adding one to a binary number, each carry merging two lists of
-// equal size. Every loop ends whatever the links are. Contiguous lists: heap sort.
+// Linked lists: bottom-up merge sort of the list itself. pending[i] is a sorted list of 2^i nodes
+// or none, and taking a node in works like adding one to a binary number, each carry merging two
+// lists of equal size. Every loop ends whatever the links are. Contiguous lists: heap sort.
 //
 //   cells   count   the cells to sort; all, from 0 on, if `listed` is 0
 

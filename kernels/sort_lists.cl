@@ -1,17 +1,17 @@
 // Sorts lists of up to CELLIST_SORT_CHUNK_SIZE nodes; see sort.cl.
 //
-// Linked lists move to another pool, where each is contiguous, in any order: writing whole nodes in a row
-// takes less time than writing a link here and there, and so does reading them later. The old pool and its
-// heads stay as they are. Contiguous lists are sorted in place.
+// Linked lists move to another pool, where each is contiguous, in any order: writing whole nodes in
+// a row takes less time than writing a link here and there, and so does reading them later. The old
+// pool and its heads stay as they are. Contiguous lists are sorted in place.
 //
 //   cells     count    the cells to sort; all, from 0 on, if `listed` is 0
 //   longer    longer_end   out: cells with longer lists, as many as state->longer[stage] says
-//   state     1        in and out; among others the nodes of the lists, and how many lists are broken
+//   state     1        in and out: the nodes of the lists, how many lists are broken, and more
 //   heads     cells    out: heads of the lists that move
 //   nodes     capacity_nodes   out: their nodes
 //
-// CELLIST_SORT_ITEMS work-items sort CELLIST_SORT_LISTS lists, and CELLIST_SORT_TEAM of them one list.
-// Barriers stand in uniform control flow, and the range is padded to whole work-groups.
+// CELLIST_SORT_ITEMS work-items sort CELLIST_SORT_LISTS lists, and CELLIST_SORT_TEAM of them one
+// list. Barriers stand in uniform control flow, and the range is padded to whole work-groups.
 
 static inline uint cellist_sort_class(uint length) {
     uint index = 0;

@@ -1,32 +1,33 @@
-// Sorts long lists with all work-items together: chunks of CELLIST_SORT_CHUNK_SIZE nodes are ranked, then
-// merged in passes between two pools. See sort.cl.
+// Sorts long lists with all work-items together: chunks of CELLIST_SORT_CHUNK_SIZE nodes are
+// ranked, then merged in passes between two pools. See sort.cl.
 //
-// Linked lists are copied to another pool first, each contiguous there. They are traversed in parallel: some
-// nodes are splitters, one in each 2^CELLIST_SORT_SEGMENT_BITS nodes of the pool, at a place that depends
-// on a hash. A list consists of segments, each from the head or a splitter to the next splitter
-// (Helman, JaJa: "Designing Practical Efficient Algorithms for Symmetric Multiprocessors", ALENEX
-// 1999, section 4).
+// Linked lists are copied to another pool first, each contiguous there. They are traversed in
+// parallel: some nodes are splitters, one in each 2^CELLIST_SORT_SEGMENT_BITS nodes of the pool, at
+// a place that depends on a hash. A list consists of segments, each from the head or a splitter to
+// the next splitter (Helman, JaJa: "Designing Practical Efficient Algorithms for Symmetric
+// Multiprocessors", ALENEX 1999, section 4).
 //
 //   longer        lists                the cells
-//   segments      splitters + lists    a segment's nodes, and the next segment or CELLIST_NONE; the last
-//                                      ones begin at the heads
-//   offsets       splitters + lists    the list of a segment or CELLIST_NONE, and its nodes before the
-//                                      segment
+//   segments      splitters + lists    a segment's nodes, and the next segment or CELLIST_NONE; the
+//                                      last ones begin at the heads
+//   offsets       splitters + lists    the list of a segment or CELLIST_NONE, and its nodes before
+//                                      the segment
 //   long_lists    lists                where each list is
 //   chunk_owners  chunks_max           the list of each chunk
 //   heads         cells                heads of the lists that move
 //   nodes         capacity_nodes       their nodes
-//   from, to      capacity_nodes       the pools; every second pass goes from the one that holds the lists
-//                                      to the other
-//   keys          capacity_nodes       the key of each node of the lists, if CELLIST_SORT_KEEPS_KEYS is not
-//                                      0; keys_from and keys_to go with the pools. Work-items that merge
-//                                      parts of a list must agree on where these end: an expression whose
-//                                      value changes from call to call is evaluated once a record
+//   from, to      capacity_nodes       the pools; every second pass goes from the one that holds the
+//                                      lists to the other
+//   keys          capacity_nodes       the key of each node of the lists, if CELLIST_SORT_KEEPS_KEYS
+//                                      is not 0; keys_from and keys_to go with the pools. Work-items
+//                                      that merge parts of a list must agree on where these end, so
+//                                      the key is computed once a record
 //
-// A contiguous list stays a list between any two of these kernels. Every loop is bounded, and no link leads
-// outside of the pool, whatever the links are.
+// A contiguous list stays a list between any two of these kernels. Every loop is bounded, and no
+// link leads outside of the pool, whatever the links are.
 
-// Stands for the next segment where one is too long: a segment of a sound list is so long once in e^64 times.
+// Stands for the next segment where one is too long: a segment of a sound list is so long once in
+// e^64 times.
 #define CELLIST_SORT_BROKEN (CELLIST_NONE - 1u)
 #define CELLIST_SORT_SEGMENT_MAX (64u << CELLIST_SORT_SEGMENT_BITS)
 
@@ -197,8 +198,8 @@ kernel void cellist_sort_gather(CELLIST_LISTS(CELLIST_RECORD, lists), global con
     }
 }
 
-// Says that the first `stored` nodes of the pool are allocated, and no others; one work-item a shard, and one
-// a thread slot.
+// Says that the first `stored` nodes of the pool are allocated, and no others; one work-item a
+// shard, and one a thread slot.
 kernel void cellist_sort_allocate(CELLIST_LISTS(CELLIST_RECORD, lists), uint stored) {
     const cellist_view lists_view = cellist_view_of(lists);
     const uint i = get_global_id(0);
@@ -260,9 +261,9 @@ CELLIST_SORT_KERNEL cellist_sort_chunks(global const cellist_sort_long_list* lon
     cellist_sort_permute(nodes, first, last, length, item, order);
 }
 
-// How many of the first `taken` nodes of two sorted runs together are of the first run (Odeh, Green,
-// Mwassi, Shmueli, Birk: "Merge Path", IPDPSW 2012). The runs are nodes first ... middle - 1 and
-// middle ... end - 1.
+// How many of the first `taken` nodes of two sorted runs together are of the first run (Odeh,
+// Green, Mwassi, Shmueli, Birk: "Merge Path", IPDPSW 2012). The runs are nodes first ... middle - 1
+// and middle ... end - 1.
 static inline uint cellist_sort_split(global const cellist_sort_node* nodes,
                                       global const cellist_sort_bits* keys, uint first, uint middle,
                                       uint end, uint taken) {
@@ -282,8 +283,8 @@ static inline uint cellist_sort_split(global const cellist_sort_node* nodes,
     return least;
 }
 
-// Merges pairs of runs of `run` nodes; a work-item writes CELLIST_SORT_MERGE_ITEMS nodes of a list, a power
-// of two.
+// Merges pairs of runs of `run` nodes; a work-item writes CELLIST_SORT_MERGE_ITEMS nodes of a list,
+// a power of two.
 kernel void cellist_sort_merge_runs(global const cellist_sort_long_list* long_lists,
                                     global const uint* chunk_owners, uint chunks,
                                     global const cellist_sort_node* from,

@@ -1,12 +1,13 @@
-// Brings the top k records of every list, those that come first, to its first nodes, in order; the others
-// follow in any order. See sort.cl. The whole list is visited.
+// Brings the top k records of every list, those that come first, to its first nodes, in order; the
+// others follow in any order. See sort.cl. The whole list is visited.
 //
-//   count       records of each list that are brought to its first nodes, at most CELLIST_SORT_TOP_K
+//   count       records that go to the first nodes of each list, at most CELLIST_SORT_TOP_K
 //   length_max  lists of more nodes are left as they are, and counted in state->longer[0]
 //   state       also counts the nodes, and the lists that end outside of the pool
 //
-// Links and offsets stay as they are, records move: the top records to the first nodes of the list, and
-// those that were there to where the top records come from. A work-item has CELLIST_SORT_LISTS lists.
+// Links and offsets stay as they are, records move: the top records to the first nodes of the list,
+// and those that were there to where the top records come from. A work-item has CELLIST_SORT_LISTS
+// lists.
 
 // The nodes of a list whose records come first, in order, and its first nodes.
 typedef struct cellist_sort_top {

@@ -1,8 +1,8 @@
-// Checks the offsets of lists that lie one after the other: that they ascend inside the pool, that they
-// match the counts, and that every list was filled.
+// Checks the offsets of lists that lie one after the other: that they ascend inside the pool, that
+// they match the counts, and that every list was filled.
 //
 //   offsets    cells + 1   where lists with these counts begin; the heads, to skip this check
-//   findings   1   in: 0; out: lists that begin or end elsewhere, before they begin, or after the pool;
+//   findings   1   in: 0; out: lists that begin or end elsewhere, before they begin, after the pool;
 //                  nodes that no record was written to, nodes of all lists
 //
 // One work-item a cell; the range is padded to whole work-groups.

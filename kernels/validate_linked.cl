@@ -1,13 +1,14 @@
-// Checks the links of every list: each allocated node is reached from exactly one head, exactly once.
+// Checks the links of every list: each allocated node is reached from exactly one head, exactly
+// once.
 //
 //   reached   (capacity_nodes + 31) / 32   in: 0; a bit a node: some link leads to it
 //   findings  1                            in: 0; out: links to nodes
 //                                          never allocated, links to nodes reached before, nodes
 //                                          reached
 //
-// One work-item a cell; the range is padded to whole work-groups. A traversal ends at the first node
-// that another link reached, so all traversals together take at most nodes + cells steps, whatever the links
-// hold, and no address outside of the pool is read.
+// One work-item a cell; the range is padded to whole work-groups. A traversal ends at the first
+// node that another link reached, so all traversals together take at most nodes + cells steps,
+// whatever the links hold, and no address outside of the pool is read.
 #include <cellist/lists.clh>
 
 kernel void cellist_validate_linked(CELLIST_LISTS(CELLIST_RECORD, lists),

@@ -29,6 +29,10 @@ Kernel scan_kernel(const std::shared_ptr<DeviceState>& device, cl_uint group, co
             {}};
 }
 
+std::uint64_t blocks_of(std::uint64_t cells, cl_uint group) {
+    return cells / (group * cells_of_item) + 1;
+}
+
 Range blocks_range(std::uint64_t blocks, std::size_t group) {
     Range range(blocks * group);
     range.local = {group, 1, 1};
@@ -41,7 +45,7 @@ CellScan::CellScan(const MemoryOwner& device, std::uint64_t cells, cl_uint count
     : group_(group_of(device->info)),
       cells_(static_cast<cl_uint>(cells)),
       counts_at_(counts_at),
-      blocks_(cells / (group_ * cells_of_item) + 1),
+      blocks_(blocks_of(cells, group_)),
       block_sums_(scan_kernel(device, group_, "cellist_block_sums")),
       block_starts_(scan_kernel(device, group_, "cellist_block_starts")),
       block_offsets_(scan_kernel(device, group_, "cellist_block_offsets")),
@@ -49,6 +53,11 @@ CellScan::CellScan(const MemoryOwner& device, std::uint64_t cells, cl_uint count
       hashes_(device, blocks_, sizeof(cl_ulong), "hashes"),
       maxima_(device, blocks_, sizeof(cl_uint), "maxima"),
       totals_(device, 1, sizeof(Totals), "totals") {}
+
+std::uint64_t CellScan::bytes_for(const DeviceInfo& device, std::uint64_t cells) {
+    return blocks_of(cells, group_of(device)) * (2 * sizeof(cl_ulong) + sizeof(cl_uint)) +
+           sizeof(Totals);
+}
 
 void CellScan::sum(const cl::Buffer& heads, cl_uint limit) {
     block_sums_.run(blocks_range(blocks_, group_), heads, counts_at_, cells_, limit, sums_.cl(),

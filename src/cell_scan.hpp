@@ -4,6 +4,7 @@
 #include <memory>
 
 #include <cellist/detail/memory.hpp>
+#include <cellist/device.hpp>
 #include <cellist/kernel.hpp>
 
 namespace cellist::detail {
@@ -13,6 +14,8 @@ namespace cellist::detail {
 class CellScan {
 public:
     CellScan(const MemoryOwner& device, std::uint64_t cells, cl_uint counts_at);
+    /// The memory that it takes.
+    [[nodiscard]] static std::uint64_t bytes_for(const DeviceInfo& device, std::uint64_t cells);
 
     struct Totals {
         cl_ulong sum = 0;      ///< of min(count, limit) over all cells

@@ -37,7 +37,7 @@ BuildReport ContainerStorage::measure(const std::function<BuildReport()>& run,
     measurement.stored = report.stored;
 
     std::array<cl_uint, 2> found{};
-    Memory findings(kernels_.device(), found.size(), sizeof(cl_uint), "findings");
+    Memory findings(kernels_.device().state(), found.size(), sizeof(cl_uint), "findings");
     findings.write(found.data(), sizeof found);
     Arguments arguments;
     storage_->add_to(arguments);

@@ -206,9 +206,16 @@ std::uint64_t ListsCore::most_records() const {
 /// Where each list goes when all lists lie one after the other: cells + 1 offsets.
 Memory ListsCore::device_offsets() const {
     Memory words = device_lengths(shape_.cells() + 1);
-    if (!scan_) scan_ = std::make_unique<CellScan>(device_, shape_.cells(), 0);
-    scan_->sum(words.cl(), CELLIST_NONE);
-    scan_->write_offsets(words.cl(), words.cl(), most_records());
+    // Kept where the budget has room for it.
+    const bool fits =
+        in_use().pool().has_room_for(CellScan::bytes_for(device_->info, shape_.cells()));
+    std::unique_ptr<CellScan> once;
+    if (!scan_)
+        (fits ? scan_ : once) = std::make_unique<CellScan>(
+            fits ? device_ : MemoryOwner(device_.state()), shape_.cells(), 0);
+    CellScan& scan = scan_ ? *scan_ : *once;
+    scan.sum(words.cl(), CELLIST_NONE);
+    scan.write_offsets(words.cl(), words.cl(), most_records());
     return words;
 }
 

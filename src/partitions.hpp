@@ -11,8 +11,8 @@
 
 namespace cellist::detail {
 
-/// Memory where the threads of a processor leave records in a single pass, in blocks of their own for
-/// the partition of each record's cell. See mode PARTITIONED in view.h.
+/// Memory where the threads of a processor leave records in a single pass, in blocks of their own
+/// for the partition of each record's cell. See mode PARTITIONED in view.h.
 class Partitions {
 public:
     struct Plan {
@@ -28,8 +28,8 @@ public:
         [[nodiscard]] std::uint64_t head_words() const;
         [[nodiscard]] std::uint64_t bytes() const;
     };
-    /// For an eighth more records than these. None where a device has no such threads, or its limits or so
-    /// few records forbid it.
+    /// For an eighth more records than these. None where a device has no such threads, or its
+    /// limits or so few records forbid it.
     [[nodiscard]] static std::optional<Plan> plan(const DeviceInfo& device, std::size_t node_bytes,
                                                   std::uint64_t cells, std::uint64_t records);
 

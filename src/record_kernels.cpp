@@ -4,7 +4,7 @@
 
 namespace cellist::detail {
 
-RecordKernels::RecordKernels(std::shared_ptr<DeviceState> device, Definitions definitions)
+RecordKernels::RecordKernels(MemoryOwner device, Definitions definitions)
     : device_(std::move(device)), definitions_(std::move(definitions)) {}
 
 Kernel& RecordKernels::get(std::initializer_list<KernelFile> files, const char* name, unsigned mode,

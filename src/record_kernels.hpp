@@ -6,6 +6,7 @@
 #include <string_view>
 #include <tuple>
 
+#include <cellist/detail/memory.hpp>
 #include <cellist/detail/record_type.hpp>
 #include <cellist/kernel.hpp>
 
@@ -24,7 +25,7 @@ struct KernelFile {
 class RecordKernels {
 public:
     /// The last of the definitions is the record.
-    RecordKernels(std::shared_ptr<DeviceState> device, Definitions definitions);
+    RecordKernels(MemoryOwner device, Definitions definitions);
 
     /// The kernel `name` of a program: the definitions, then the files. CELLIST_RECORD is the
     /// record; the containers among the arguments have this mode, as in view.h. The reference is
@@ -32,13 +33,14 @@ public:
     [[nodiscard]] Kernel& get(std::initializer_list<KernelFile> files, const char* name,
                               unsigned mode, const std::string& definitions = {});
     [[nodiscard]] const RecordType& record() const { return definitions_.records.back(); }
-    [[nodiscard]] const std::shared_ptr<DeviceState>& device() const { return device_; }
+    /// Owns the memory of the container that is not of its storage.
+    [[nodiscard]] const MemoryOwner& device() const { return device_; }
 
 private:
     /// Enough for the lists of one container, sorted by some eight keys in turn.
     static constexpr std::size_t kernels_max = 128;
 
-    std::shared_ptr<DeviceState> device_;
+    MemoryOwner device_;
     Definitions definitions_;
     /// By name, mode and definitions.
     Recent<std::tuple<std::string, unsigned, std::string>, Kernel> kernels_{kernels_max};

@@ -44,8 +44,8 @@ bool is_member(const SortKey& key) {
            std::all_of(key.expression.begin() + prefix.size(), key.expression.end(), in_name);
 }
 
-/// An expression of `record`, rewritten to read the record through a pointer. A private copy of a large
-/// record would take too much memory.
+/// An expression of `record`, rewritten to read the record through a pointer. A private copy of a
+/// large record would take too much memory.
 std::string of_pointer(std::string_view expression) {
     std::string text;
     char before = ' ';  // the last character that is no blank
@@ -64,8 +64,8 @@ std::string of_pointer(std::string_view expression) {
 /// Defines cellist_sort_key.
 std::string key_function(const SortKey& key) {
     const std::string type = key.bits == 32 ? "uint" : "ulong";
-    // Where clang knows that a value is undefined, it is an error: the sort around it would be undefined
-    // as well.
+    // Where clang knows that a value is undefined, it is an error: the sort around it would be
+    // undefined as well.
     return "#ifdef __clang__\n#pragma clang diagnostic push\n"
            "#pragma clang diagnostic error \"-Wdivision-by-zero\"\n"
            "#pragma clang diagnostic error \"-Warray-bounds\"\n#endif\n"
@@ -78,8 +78,8 @@ std::string key_function(const SortKey& key) {
            "\n); }\n#ifdef __clang__\n#pragma clang diagnostic pop\n#endif\n";
 }
 
-/// The type of the pieces in which large nodes move: the widest vector whose size divides a node. Empty for
-/// small nodes, which move whole.
+/// The type of the pieces in which large nodes move: the widest vector whose size divides a node.
+/// Empty for small nodes, which move whole.
 std::string piece_type(std::size_t node_bytes) {
     constexpr std::size_t whole_max = 256;
     if (node_bytes <= whole_max) return {};
@@ -108,12 +108,7 @@ std::string sort_definitions(const RecordType& record, bool linked, const SortKe
 }  // namespace
 
 ListSorter::ListSorter(MemoryOwner device, RecordKernels& kernels)
-    : device_(std::move(device)),
-      kernels_(kernels),
-      device_type_(device_->info.type),
-      state_(device_, 1, sizeof(cellist_sort_state), "state of a sort"),
-      cells_{Memory(device_, 1, sizeof(cl_uint), "cells with long lists"),
-             Memory(device_, 1, sizeof(cl_uint), "cells with long lists")} {}
+    : device_(std::move(device)), kernels_(kernels), device_type_(device_->info.type) {}
 
 Kernel& ListSorter::kernel(const KernelFile& file, const char* name, const Sort& sort,
                            const SortTuning& tuning) {
@@ -144,9 +139,17 @@ void ListSorter::check_nodes(const Sort& sort) const {
                 " (Lists::validate() finds why)");
 }
 
-/// Whether a sort may take so much more memory.
+/// Makes the state the first time. False where the budget has no room for it.
+bool ListSorter::make_state(const Sort& sort) {
+    if (state_.size_bytes() > 0) return true;
+    if (!has_room_for(sort, sizeof(cellist_sort_state))) return false;
+    state_ = Memory(device_, 1, sizeof(cellist_sort_state), "state of a sort");
+    return true;
+}
+
+/// Whether a sort may take more memory.
 bool ListSorter::has_room_for(const Sort& sort, std::uint64_t more_bytes) const {
-    return sort.storage.has_room_for(sort.storage.bytes() + device_.bytes() + more_bytes);
+    return sort.storage.pool().has_room_for(more_bytes);
 }
 
 ListSorter::Sort ListSorter::sort_of(ListStorage& storage, const SortKey& key) const {
@@ -161,9 +164,11 @@ ListSorter::Sort ListSorter::sort_of(ListStorage& storage, const SortKey& key) c
 cl::Event ListSorter::sort(ListStorage& storage, const SortKey& key, std::uint32_t top_k) {
     if (storage.cells() == 0 || top_k == 0) return device_->marker();
     Sort sort = sort_of(storage, key);
+    if (!make_state(sort)) return sort_in_place(storage, key);
     if (select_top_k(sort, top_k)) return std::move(sort.done);
-    if (sort.linked && storage.back_buffer() == nullptr) return sort_in_place(storage, key);
-    if (!has_room_for(sort, 2 * most_left(sort) * sizeof(cl_uint)))
+    if (sort.linked && storage.pool().back_buffer() == nullptr) return sort_in_place(storage, key);
+    if (!has_room_for(sort,
+                      2 * most_left(sort, sort.plan.of_class(first_class(sort))) * sizeof(cl_uint)))
         return sort_in_place(storage, key);
     sort_classes(sort);
     if (sort.count > 0) {
@@ -185,7 +190,7 @@ cl::Event ListSorter::sort_in_place(ListStorage& storage, const SortKey& key) {
 /// Sorts the lists that are left without more memory.
 void ListSorter::sort_in_place(Sort& sort) {
     const cl_uint listed = sort.cells != nullptr ? 1 : 0;
-    const cl::Buffer& cells = listed ? sort.cells->cl() : state_.cl();
+    const cl::Buffer& cells = (listed ? *sort.cells : sort.storage.pool().heads()).cl();
     const auto count = static_cast<cl_uint>(sort.count);
     kernel({"sort_in_place.cl", kernels::sort_in_place_cl}, "cellist_sort_in_place", sort,
            sort.plan.of_long_lists())
@@ -193,8 +198,9 @@ void ListSorter::sort_in_place(Sort& sort) {
                  &sort.done);
 }
 
-/// True if the top k records of every list are its first nodes then. False if lists are to be sorted:
-/// because that takes less time, or there are long lists, or k is more than a work-item keeps.
+/// True if the top k records of every list are its first nodes then. False if lists are to be
+/// sorted: because that takes less time, or there are long lists, or k is more than a work-item
+/// keeps.
 bool ListSorter::select_top_k(Sort& sort, std::uint32_t top_k) {
     if (!sort.plan.top_k_pays(top_k, sort.storage.stored() / sort.storage.cells())) return false;
     const SortTuning tuning = sort.plan.of_top_k(top_k);
@@ -237,18 +243,16 @@ void ListSorter::sort_classes(Sort& sort) {
     in_class_.back() += static_cast<cl_uint>(sort.count);
 }
 
-/// The most lists that the first class can leave: in sound lists, only longer ones are left.
-std::uint64_t ListSorter::most_left(const Sort& sort) const {
-    const SortTuning tuning = sort.plan.of_class(first_class(sort));
-    return std::min<std::uint64_t>(sort.count, sort.storage.pool_nodes() / (tuning.chunk_size + 1));
+/// The most lists that a class can leave: in sound lists, only longer ones are left.
+std::uint64_t ListSorter::most_left(const Sort& sort, const SortTuning& tuning) const {
+    const std::uint64_t nodes = sort.storage.pool().nodes_count();
+    return std::max<std::uint64_t>(std::min(sort.count, nodes / (tuning.chunk_size + 1)), 1);
 }
 
 /// Sorts a class of the lists that are left, and collects the cells of those that are longer.
 void ListSorter::sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage) {
     const ListStorage& storage = sort.storage;
-    // Sound lists that are longer than the class are no more than this.
-    const std::uint64_t most =
-        std::min<std::uint64_t>(sort.count, storage.pool_nodes() / (tuning.chunk_size + 1));
+    const std::uint64_t most = most_left(sort, tuning);
     Memory& longer = cells_[stage % 2];
     if (longer.size_bytes() < most * sizeof(cl_uint))
         longer = Memory(device_, most, sizeof(cl_uint), "cells with long lists");
@@ -257,7 +261,7 @@ void ListSorter::sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage)
                                        static_cast<cl_uint>(sort.count), longer.cl(),
                                        static_cast<cl_uint>(most), stage, state_.cl());
     if (sort.linked) {
-        const ListStorage::BackBuffer* back_buffer = sort.storage.back_buffer();
+        const NodePool::BackBuffer* back_buffer = sort.storage.pool().back_buffer();
         arguments.add(back_buffer->heads.cl());
         arguments.add(back_buffer->nodes.cl());
     }
@@ -271,17 +275,17 @@ void ListSorter::sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage)
 /// Sorts the lists that are left: makes each contiguous, sorts chunks of them, and merges these.
 void ListSorter::sort_long(Sort& sort) {
     ListStorage& storage = sort.storage;
-    const ListStorage::BackBuffer* back_buffer = storage.back_buffer();
+    const NodePool::BackBuffer* back_buffer = storage.pool().back_buffer();
     const std::optional<Keys> keys = back_buffer != nullptr ? keys_of(sort) : std::nullopt;
     if (!keys) return sort_in_place(sort);
     const SortTuning tuning = sort.plan.of_long_lists();
     const auto count = static_cast<cl_uint>(sort.count);
     const cl::Buffer& cells = sort.cells->cl();
     const Memory long_lists(device_.state(), count, sizeof(cellist_sort_long_list), "long lists");
-    const std::uint64_t chunks_max = storage.pool_nodes() / tuning.chunk_size + count;
+    const std::uint64_t chunks_max = storage.pool().nodes_count() / tuning.chunk_size + count;
     const Memory chunk_owners(device_.state(), chunks_max, sizeof(cl_uint), "owners of chunks");
     const std::uint64_t segment_count =
-        sort.linked ? (storage.pool_nodes() >> segment_bits) + count : 0;
+        sort.linked ? (storage.pool().nodes_count() >> segment_bits) + count : 0;
     const Memory segments(device_.state(), segment_count, sizeof(cl_uint2), "segments of lists");
     Memory offsets(device_.state(), segment_count, sizeof(cl_uint2), "offsets of segments");
     const Range traversals = Range::padded((segment_count + tuning.lists - 1) / tuning.lists,
@@ -311,7 +315,7 @@ void ListSorter::sort_long(Sort& sort) {
 
 /// Buffers for keys; nothing where there is no memory for them.
 std::optional<ListSorter::Keys> ListSorter::keys_of(const Sort& sort) const {
-    const std::uint64_t count = is_member(sort.key) ? 0 : sort.storage.pool_nodes();
+    const std::uint64_t count = is_member(sort.key) ? 0 : sort.storage.pool().nodes_count();
     const std::uint64_t bytes = count * sizeof(cl_ulong);
     if (bytes > device_->info.max_allocation_bytes || !has_room_for(sort, 2 * bytes)) return {};
     try {
@@ -328,8 +332,8 @@ void ListSorter::merge(Sort& sort, const Memory& long_lists, const Memory& chunk
                        const Keys& keys) {
     const SortTuning tuning = sort.plan.of_long_lists();
     const cl_uint chunks = sort.state.chunks;
-    const cl::Buffer& nodes = sort.storage.nodes();
-    const cl::Buffer& back_buffer = sort.storage.back_buffer()->nodes.cl();
+    const cl::Buffer& nodes = sort.storage.pool().nodes().cl();
+    const cl::Buffer& back_buffer = sort.storage.pool().back_buffer()->nodes.cl();
     run_long(
         sort, "cellist_sort_chunks",
         Range::padded(std::uint64_t{chunks} * tuning.items, tuning.items == 1 ? 16 : tuning.items),
@@ -363,10 +367,10 @@ void ListSorter::run_long(Sort& sort, const char* name, const Range& range,
 /// Puts the lists that have moved in the place of those that have not.
 void ListSorter::adopt(Sort& sort) {
     ListStorage& storage = sort.storage;
-    if (storage.stored() < storage.pool_nodes())
-        run_long(sort, "cellist_sort_allocate", Range::padded(storage.counters()),
+    if (storage.stored() < storage.pool().nodes_count())
+        run_long(sort, "cellist_sort_allocate", Range::padded(storage.pool().shards_count()),
                  arguments_of(storage, static_cast<cl_uint>(storage.stored())));
-    storage.swap_back_buffer();
+    storage.pool().swap_back_buffer();
 }
 
 }  // namespace cellist::detail

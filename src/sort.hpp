@@ -17,15 +17,16 @@
 
 namespace cellist::detail {
 
-/// Sorts the lists of a container in classes by their length: up to some hundred nodes by ranking, each
-/// list on its own; longer ones by all work-items together. Kernels are compiled when a list needs them.
+/// Sorts the lists of a container in classes by their length: up to some hundred nodes by ranking,
+/// each list on its own; longer ones by all work-items together. Kernels are compiled when a list
+/// needs them.
 class ListSorter {
 public:
     ListSorter(MemoryOwner device, RecordKernels& kernels);
 
-    /// Sorts all lists, the first `top_k` nodes of each at least: the others may follow in any order. Blocks until
-    /// it is known how long the lists are. Throws Error where links or offsets are corrupt. Whatever fails,
-    /// sound lists keep their records, in some order.
+    /// Sorts all lists, the first `top_k` nodes of each at least: the others may follow in any
+    /// order. Blocks until it is known how long the lists are. Throws Error where links or offsets
+    /// are corrupt. Whatever fails, sound lists keep their records, in some order.
     cl::Event sort(ListStorage& storage, const SortKey& key, std::uint32_t top_k);
     /// Sorts all lists in place, one work-item a list. Does not block.
     cl::Event sort_in_place(ListStorage& storage, const SortKey& key);
@@ -52,8 +53,8 @@ private:
     void sort_classes(Sort& sort);
     void sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage);
     void sort_long(Sort& sort);
-    /// The keys of long lists, where their values must be kept: one buffer goes with the pool, the other
-    /// with its back buffer.
+    /// The keys of long lists, where their values must be kept: one buffer goes with the pool, the
+    /// other with its back buffer.
     struct Keys {
         Memory of_pool;
         Memory of_back_buffer;
@@ -64,8 +65,9 @@ private:
     void run_long(Sort& sort, const char* name, const Range& range, const Arguments& arguments);
     void adopt(Sort& sort);
     [[nodiscard]] std::size_t first_class(const Sort& sort) const;
-    [[nodiscard]] std::uint64_t most_left(const Sort& sort) const;
+    [[nodiscard]] std::uint64_t most_left(const Sort& sort, const SortTuning& tuning) const;
 
+    [[nodiscard]] bool make_state(const Sort& sort);
     void clear_state();
     void read_state(Sort& sort) const;
     void check_nodes(const Sort& sort) const;
@@ -75,8 +77,8 @@ private:
     MemoryOwner device_;
     RecordKernels& kernels_;
     cl_device_type device_type_;
-    Memory state_;
-    std::array<Memory, 2> cells_;  ///< whose lists each class leaves, by turns
+    Memory state_;                 ///< none before the first sort that has room for it
+    std::array<Memory, 2> cells_;  ///< whose lists each class leaves, alternating
     std::array<cl_uint, CELLIST_SORT_CLASSES> in_class_{};  ///< lists of the last sort
 };
 

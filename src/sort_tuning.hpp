@@ -21,9 +21,9 @@ struct SortTuning {
     friend auto operator<=>(const SortTuning&, const SortTuning&) = default;
 };
 
-/// What is best for a type of device and a kind of node. GPUs sort a list with several work-items that
-/// share local memory, and have a class for each power of two of its length from 16 to 256. Elsewhere
-/// one work-item sorts several lists, and there is one class.
+/// What is best for a type of device and a kind of node. GPUs sort a list with several work-items
+/// that share local memory, and have a class for each power of two of its length from 16 to 256.
+/// Elsewhere one work-item sorts several lists, and there is one class.
 class SortPlan {
 public:
     /// As on a device of a type with the limits of this one.

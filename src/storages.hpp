@@ -21,12 +21,11 @@ public:
     void reserve(std::uint64_t total, std::uint64_t longest) override;
 
 private:
-    void make_whole(bool without_pool) override;
-    [[nodiscard]] cl_uint thread_slots_with(std::uint64_t capacity_nodes) const override;
+    void make_whole(bool without_nodes) override;
 };
 
-/// The lists lie behind one another: two passes over the same kernels, count and fill. A single one where the
-/// records are put into partitions first and the library moves them.
+/// Contiguous lists: two passes over the same kernels, count and fill. A single one where the
+/// kernels put the records into partitions first, and the library moves them.
 class CountedStorage final : public ListStorage {
 public:
     CountedStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options);
@@ -47,21 +46,22 @@ public:
     [[nodiscard]] std::vector<cl_uint> counts(BuildReport& report);
 
 private:
-    void make_whole(bool without_pool) override;
+    void make_whole(bool without_nodes) override;
 
     [[nodiscard]] std::unique_ptr<Partitions> partitions_for_pool() const;
+    void set_partitions(std::unique_ptr<Partitions> partitions);
     void move_from_partitions();
     bool review_partitions(BuildReport& report);
-    [[nodiscard]] std::uint64_t replaceable_bytes() const override;
     void make_room(const BuildReport& report);
     PendingRead find(Findings& findings, const Memory& offsets);
     [[nodiscard]] cl_uint counts_at() const { return static_cast<cl_uint>(shape_.cells() + 1); }
 
     CellScan scan_;
     bool counted_ = false;  ///< the next pass fills
-    Shards counting_;       ///< counters of the counting pass
+    Counters counting_;     ///< counters of the counting pass
     CellScan::Totals demand_;
-    Findings filled_{{device_, 1, sizeof(cellist_findings), "findings"}};  ///< of the filling pass
+    Findings filled_{
+        {pool_.device(), 1, sizeof(cellist_findings), "findings"}};  ///< of the filling pass
     std::unique_ptr<Partitions> partitions_;  ///< kept between builds; null where these count
     std::uint64_t no_place_up_to_ =
         0;                     ///< this capacity; a thread found none in the partitions for it
@@ -82,7 +82,7 @@ public:
     void reserve(std::uint64_t total, std::uint64_t longest) override;
 
 private:
-    void make_whole(bool without_pool) override;
+    void make_whole(bool without_nodes) override;
 
     void set_slots(std::uint64_t slots);
     [[nodiscard]] std::uint64_t nodes_with(std::uint64_t slots) const;
@@ -91,8 +91,9 @@ private:
     CellScan::Totals in_slots_;  ///< of the last pass: records in slots, longest list
 };
 
-/// A number of slots for each cell, for the records that come first. Passes over the same kernels: one
-/// ranks a word of their keys, one fills the slots; the next word follows where that leaves a tie.
+/// A number of slots for each cell, for the records that come first. Passes over the same kernels:
+/// a threshold pass for a word of their keys, and a selection pass that fills the slots. The next
+/// word follows where that leaves a tie.
 class NearestStorage final : public ListStorage {
 public:
     NearestStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options);
@@ -107,15 +108,15 @@ public:
     void reserve(std::uint64_t, std::uint64_t) override {}
 
 private:
-    void make_whole(bool without_pool) override;
+    void make_whole(bool without_nodes) override;
 
     void prepare_threshold_pass();
     void run(const char* name, const Memory* selection = nullptr);
     [[nodiscard]] std::uint64_t row(std::uint64_t number) const { return number * shape_.cells(); }
 
     CellScan scan_;
-    bool selecting_ = false;  ///< the next pass fills the slots
-    Shards threshold_pass_;   ///< counters of the last ranking pass
+    bool selecting_ = false;   ///< the next pass fills the slots
+    Counters threshold_pass_;  ///< its counters
     CellScan::Totals kept_;
     cellist_selection selection_{};
     Memory selection_memory_;

@@ -1,4 +1,4 @@
-// Allocation fills the pool to its last one, and no record is lost on the way.
+// Allocation fills the pool to its last node, and no record is lost on the way.
 #include "support/inserts.hpp"
 #include "support/storages.hpp"
 
@@ -16,7 +16,7 @@ static uint item_index(void)
 
 static uint cell_of(uint i, uint run, uint cells) { return i / run * 7 % cells; }
 
-// Each of these inserts `each` records a work-item; record k of work-item i has the id i * each + k.
+// Each of these inserts `each` records a work-item; record k of item i has the id i * each + k.
 kernel void by_insert(CELLIST_LISTS(Item, lists), uint run, uint each)
 {
     const uint i = item_index();
@@ -162,7 +162,7 @@ TEST_CASE("straight and divergent inserts grow the pool to the exact demand") {
         }
 }
 
-// ---- the thread_blocks of threads ----------------------------------------------------------------------
+// ---- per-thread blocks -------------------------------------------------------------------------
 
 TEST_CASE("a pool that grows holds its capacity in one pass, whatever kernels insert") {
     // With threads that have nodes of their own, where the device has such, and without.
@@ -202,11 +202,11 @@ TEST_CASE("a node in the hand of a thread is free") {
 kernel void steal(CELLIST_LISTS(Item, lists), global uint* found)
 {
     const cellist_view lists_view = cellist_view_of(lists);
-    volatile global cellist_thread_block* thread_blocks = cellist_thread_blocks(lists_shards, lists_view);
+    volatile global cellist_thread_block* blocks = cellist_thread_blocks(lists_shards, lists_view);
     *found = 0;
     for (uint i = 0; i < lists_view.thread_slots; ++i) {
-        if (thread_blocks[i].node != thread_blocks[i].last) lists_heads[0] = thread_blocks[i].node;
-        *found += thread_blocks[i].last - thread_blocks[i].node + thread_blocks[i].end - thread_blocks[i].next;
+        if (blocks[i].node != blocks[i].last) lists_heads[0] = blocks[i].node;
+        *found += blocks[i].last - blocks[i].node + blocks[i].end - blocks[i].next;
     }
 }
 )",

@@ -161,7 +161,7 @@ TEST_CASE("lists are sorted where there is no memory for a second pool") {
         Inserter(lists).build(lists, inserts);
         return lists.pool_bytes();
     }();
-    options.budget_bytes = built + 100;
+    options.budget_bytes = built;
     if (storage == Storage::fixed) options.slots = 1025;
     Lists<Item> lists(device(), {lengths.size()}, options);
     CELLIST_EACH_DIVISION(lists);

@@ -287,8 +287,7 @@ public:
     /// Returns the number of nodes in the pool.
     [[nodiscard]] std::uint64_t capacity_nodes() const { return core_->capacity_nodes(); }
     /// Returns the device memory of all buffers that the container keeps: heads, nodes, counters,
-    /// and the buffers that sorts, downloads and builds keep for reuse. budget_bytes bounds it,
-    /// except for sums over the cells: 20 bytes for each 4,096 cells, and some hundred bytes.
+    /// and the buffers that sorts, downloads and builds keep for reuse. budget_bytes bounds it.
     [[nodiscard]] std::uint64_t pool_bytes() const { return core_->pool_bytes(); }
     /// Returns the storage in use. In Storage::automatic it is the storage of the last build.
     [[nodiscard]] Storage storage() const { return core_->storage_in_use(); }

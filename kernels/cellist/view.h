@@ -8,8 +8,8 @@
 #define CELLIST_UINT cl_uint
 #endif
 
-// A counter gives this many nodes before the addresses move on by a whole round of shards. A block of 256
-// keeps the stores of a work-group together.
+// A counter gives this many nodes before the addresses move on by a whole round of shards. A block
+// of 256 keeps the stores of a work-group together.
 #define CELLIST_BLOCK_BITS 8u
 #define CELLIST_BLOCK_NODES (1u << CELLIST_BLOCK_BITS)
 
@@ -19,9 +19,9 @@
 // No node, no cell. Also the end of a list.
 #define CELLIST_NONE 0xFFFFFFFFu
 
-// Largest capacity. It leaves room between the capacity and 2^32 for what the work-items that allocate at
-// one moment ask for, CELLIST_BLOCK_NODES each at most: a counter runs past its last node by as many, and
-// comes back.
+// Largest capacity. It leaves room between the capacity and 2^32 for what the work-items that
+// allocate at one moment ask for, CELLIST_BLOCK_NODES each at most: a counter runs past its last
+// node by as many, and comes back.
 #define CELLIST_CAPACITY_NODES_MAX 0xC0000000u
 
 // Inserts that are counted for one cell; more of them are counted as dropped.
@@ -30,8 +30,8 @@
 // Largest extent of one dimension: coordinates are compared as 32-bit integers.
 #define CELLIST_EXTENT_MAX 0x7FFFFFFFu
 
-// How the nodes are arranged, and what an insert does. The host compiles a program for the modes of its
-// containers only. Each file describes the heads and nodes of its modes.
+// How the nodes are arranged, and what an insert does. The host compiles a program for the modes of
+// its containers only. Each file describes the heads and nodes of its modes.
 #define CELLIST_LINKED 1u           // linked.clh
 #define CELLIST_COUNTING 2u         // counted.clh
 #define CELLIST_CONTIGUOUS 4u       // counted.clh
@@ -85,8 +85,8 @@ typedef struct cellist_shard {
     CELLIST_UINT padding[7];
 } cellist_shard;
 
-// Nodes that one thread has for itself, alone in its cache line: those at the addresses node ... last - 1,
-// which lie in one block, and then the next ... end - 1 of a shard.
+// Nodes that one thread has for itself, alone in its cache line: those at the addresses node ...
+// last - 1, which lie in one block, and then the next ... end - 1 of a shard.
 typedef struct cellist_thread_block {
     CELLIST_UINT node;
     CELLIST_UINT last;
@@ -96,8 +96,8 @@ typedef struct cellist_thread_block {
     CELLIST_UINT padding[11];
 } cellist_thread_block;
 
-// Where a thread keeps the records of one partition: in blocks of CELLIST_BLOCK_NODES nodes. All blocks but
-// the last are full.
+// Where a thread keeps the records of one partition: in blocks of CELLIST_BLOCK_NODES nodes. All
+// blocks but the last are full.
 typedef struct cellist_cursor {
     CELLIST_UINT node;    // the next one
     CELLIST_UINT last;    // the end of its block
