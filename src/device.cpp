@@ -227,17 +227,16 @@ const std::optional<Profile>& DeviceState::profile() {
 }
 
 cl::Program DeviceState::program(const std::string& source, const std::string& options) {
+    const std::string key = options + '\0' + source;
+    const std::lock_guard lock(mutex_);
+    if (const cl::Program* known = programs_.find(key))
+        return opencl([&] { return *known; });
     if (includes_files(source, options)) {
         // Drivers cache programs as well, and some ignore included files: no text is used twice.
         static std::atomic<std::uint64_t> count = std::random_device{}();
         return build_program(source + "\n// " + std::to_string(++count) + "\n", options);
     }
-    const std::lock_guard lock(mutex_);
-    const std::string key = options + '\0' + source;
-    return opencl([&] {
-        if (const cl::Program* known = programs_.find(key)) return *known;
-        return programs_.add(key, build_program(source, options));
-    });
+    return opencl([&] { return programs_.add(key, build_program(source, options)); });
 }
 
 cl::Program DeviceState::build_program(const std::string& source,

@@ -243,7 +243,7 @@ std::vector<std::string> defined_macros(std::string_view options) {
     return names;
 }
 
-std::string name_behind(std::string_view prefix, std::string_view text) {
+std::string name_after(std::string_view prefix, std::string_view text) {
     for (std::size_t at = text.find(prefix); at != std::string_view::npos;
          at = text.find(prefix, at)) {
         at += prefix.size();
@@ -254,9 +254,9 @@ std::string name_behind(std::string_view prefix, std::string_view text) {
 }
 
 std::string with_hints(std::string log, const std::function<bool(const std::string&)>& known) {
-    std::string record = name_behind("cellist_node_", log);
+    std::string record = name_after("cellist_node_", log);
     if (known(record)) record.clear();
-    const std::string key = name_behind("cellist_key_", log);
+    const std::string key = name_after("cellist_key_", log);
     if (!record.empty())
         log += "\nhint: name a Lists<" + record + "> or cellist::type<" + record +
                "> in the constructor of the Kernel, so that it knows the struct";

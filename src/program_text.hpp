@@ -58,8 +58,8 @@ private:
 /// option. Also true for some sources that only look like it, for example in a comment.
 [[nodiscard]] bool includes_files(std::string_view source, std::string_view options);
 
-/// The letters, digits and underscores behind the first `prefix` that has any; empty if none has.
-[[nodiscard]] std::string name_behind(std::string_view prefix, std::string_view text);
+/// The letters, digits and underscores after the first `prefix` that has any; empty if none has.
+[[nodiscard]] std::string name_after(std::string_view prefix, std::string_view text);
 
 /// A log that mentions names which users never wrote, with what is behind them. `known` tells
 /// whether the program knows a struct of a name.

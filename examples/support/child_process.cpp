@@ -149,7 +149,8 @@ private:
 
 std::string end_of(int status, const ChildLimits& limits) {
     if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL))
-        return "it took more than " + std::to_string(limits.processor_s) + " s or was killed";
+        return "it took more than " + std::to_string(limits.processor_s) +
+               " s of processor time or was killed";
     if (WIFSIGNALED(status)) return std::string("it crashed (") + strsignal(WTERMSIG(status)) + ")";
     return "it ended without a result";
 }

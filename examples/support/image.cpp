@@ -57,12 +57,13 @@ bool are_equal(const cl_float4& a, const cl_float4& b) {
 
 }  // namespace
 
-std::vector<std::uint8_t> srgb_bytes(std::span<const cl_float4> pixels) {
+std::vector<std::uint8_t> srgb_bytes(std::span<const cl_float4> pixels, int width) {
     std::vector<std::uint8_t> bytes;
     bytes.reserve(pixels.size() * 3);
+    const auto row = static_cast<std::size_t>(width);
     for (std::size_t i = 0; i < pixels.size(); ++i) {
-        const bool is_flat = (i > 0 && are_equal(pixels[i], pixels[i - 1])) ||
-                             (i + 1 < pixels.size() && are_equal(pixels[i], pixels[i + 1]));
+        const bool is_flat = (i % row > 0 && are_equal(pixels[i], pixels[i - 1])) ||
+                             ((i + 1) % row > 0 && are_equal(pixels[i], pixels[i + 1]));
         for (const cl_float value : {pixels[i].s[0], pixels[i].s[1], pixels[i].s[2]}) {
             const double encoded = srgb_from_linear(static_cast<double>(value));
             const double up = is_flat ? noise(static_cast<std::uint32_t>(bytes.size())) : 0.5;
@@ -120,7 +121,7 @@ void write_image(const std::filesystem::path& path, std::span<const cl_float4> p
     else if (format == ImageFormat::exr)
         write_file(path, exr(pixels, width, height));
     else
-        write_bytes_as_image(path, srgb_bytes(pixels), width, height);
+        write_bytes_as_image(path, srgb_bytes(pixels, width), width, height);
 }
 
 }  // namespace support

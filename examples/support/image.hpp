@@ -13,10 +13,10 @@ namespace support {
 /// The sRGB encoding of a linear value, both clamped to 0 ... 1. NaN becomes 0.
 [[nodiscard]] double srgb_from_linear(double linear);
 
-/// Red, green and blue of linear pixels in 8-bit sRGB. Dithers pixels that equal a neighbour, so that
-/// backgrounds show no bands: the mean over many pixels is right, and the error of a byte is less than 1.
+/// Red, green and blue of linear pixels in 8-bit sRGB. Dithers pixels that equal a neighbour in
+/// their row, so that backgrounds show no bands: the mean over many pixels is right, and the error of a byte is less than 1.
 /// Rounds all other pixels. Equal images make equal bytes.
-[[nodiscard]] std::vector<std::uint8_t> srgb_bytes(std::span<const cl_float4> pixels);
+[[nodiscard]] std::vector<std::uint8_t> srgb_bytes(std::span<const cl_float4> pixels, int width);
 
 /// The bytes of a PNG file with an image of 3 bytes a pixel, row by row from the top.
 [[nodiscard]] std::string png(std::span<const std::uint8_t> bytes, int width, int height);

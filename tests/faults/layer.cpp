@@ -139,12 +139,13 @@ template <class Result, class... Args, Result (CL_API_CALL* cl_icd_dispatch::*En
 struct Call<Entry> {
     static inline const char* name = nullptr;
     static inline cl_int code = CL_SUCCESS;
-    /// Where a wait fails after another failure, it does wait: a program can do no more to know that a
-    /// device has stopped to write to its memory.
+    /// Where a wait fails after another failure, it does wait: a program can do no more to know
+    /// that a device has stopped to write to its memory.
     static constexpr bool waits = std::is_same_v<Call, Call<&cl_icd_dispatch::clFinish>> ||
                                   std::is_same_v<Call, Call<&cl_icd_dispatch::clWaitForEvents>>;
 
-    /// An entry point that fails. What it creates is counted: its result, or the event of a command.
+    /// An entry point that fails. What it creates is counted: its result, or the event of a
+    /// command.
     static Result CL_API_CALL fallible(Args... arguments) {
         if (const Verdict verdict = next_call(name, code, invalid_object<Args...>());
             verdict.code != CL_SUCCESS) {
@@ -340,6 +341,11 @@ void wrap_all() {
 }
 
 }  // namespace
+
+bool Fault::lacks_memory() const {
+    return code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_RESOURCES ||
+           code == CL_OUT_OF_HOST_MEMORY;
+}
 
 void arm(const Plan& chosen) {
     const std::lock_guard lock(mutex);

@@ -1,7 +1,8 @@
 #pragma once
 // The fault layer: an OpenCL layer that the loader puts between a program and the drivers where the
-// environment variable OPENCL_LAYERS names it. It makes chosen calls fail, and counts the references
-// that the program holds. The program links it, too, and controls it through these functions.
+// environment variable OPENCL_LAYERS names it. It makes chosen calls fail, and counts the
+// references that the program holds. The program links it, too, and controls it through these
+// functions.
 
 #include <array>
 #include <cstdint>
@@ -26,6 +27,9 @@ struct Plan {
 struct Fault {
     std::string call;  ///< e.g. "clCreateBuffer"
     int code = 0;      ///< e.g. CL_MEM_OBJECT_ALLOCATION_FAILURE
+
+    /// Whether the code tells that memory is missing.
+    [[nodiscard]] bool lacks_memory() const;
 };
 
 /// Makes calls fail until disarm().

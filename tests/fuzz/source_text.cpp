@@ -93,7 +93,7 @@ void compare_functions(const std::string& text) {
     CELLIST_FUZZ_REQUIRE(program.in_parts(text) == expected_log(text));
 
     for (const std::string prefix : {"cellist_node_", "cellist_key_"})
-        CELLIST_FUZZ_REQUIRE(detail::name_behind(prefix, text) == expected_name(prefix, text));
+        CELLIST_FUZZ_REQUIRE(detail::name_after(prefix, text) == expected_name(prefix, text));
     for (const ProgramText::Complaint& error : program.errors(text, "second"))
         CELLIST_FUZZ_REQUIRE(error.line == "1" || error.line == "2" || error.line.empty() ||
                              error.line == "#line 1 \"second\"");

@@ -30,12 +30,12 @@ void replace(std::string& text, std::string_view mark, const std::string& by) {
 
 Pictures::Pictures(const Reference& reference, const Frame& frame)
     : frame_(frame), reference_(side_by_side(linear_image(reference), frame)) {
-    (void)keep(support::srgb_bytes(reference_));
+    (void)keep(support::srgb_bytes(reference_, picture_width(frame_)));
 }
 
 void Pictures::add(const Setting& setting, const std::vector<cl_float4>& image) {
     const std::vector<cl_float4> picture = side_by_side(image, frame_);
-    const std::size_t own = keep(support::srgb_bytes(picture));
+    const std::size_t own = keep(support::srgb_bytes(picture, picture_width(frame_)));
     pictures_[text(setting)] = {own, keep(shown_difference(picture, reference_))};
 }
 

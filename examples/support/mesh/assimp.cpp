@@ -25,6 +25,7 @@
 #include "child_process.hpp"
 #include "first_line.hpp"
 #include "input_error.hpp"
+#include "placement.hpp"
 #include "raw_mesh.hpp"
 #include "raw_mesh_bytes.hpp"
 #include "read_file.hpp"
@@ -154,8 +155,8 @@ private:
     void append_mesh(const aiMesh& source, const glm::dmat4& transform) {
         if (source.mNumBones > 0 || source.mNumAnimMeshes > 0) ++poses_;
         const std::size_t first = mesh_.positions.size();
-        append_vertices(source, transform);
-        const bool mirrored = glm::determinant(glm::dmat3(transform)) < 0;
+        const Placement placement(transform);
+        append_vertices(source, placement);
         for (unsigned f = 0; f < source.mNumFaces; ++f) {
             const aiFace& face = source.mFaces[f];
             if (face.mNumIndices < 3) {
@@ -163,7 +164,8 @@ private:
                 continue;
             }
             for (unsigned k = 0; k < face.mNumIndices; ++k) {
-                const unsigned index = face.mIndices[mirrored ? face.mNumIndices - 1 - k : k];
+                const unsigned index =
+                    face.mIndices[placement.mirrors() ? face.mNumIndices - 1 - k : k];
                 mesh_.corners.push_back(index < source.mNumVertices
                                             ? static_cast<std::uint32_t>(first + index)
                                             : RawMesh::no_vertex);
@@ -171,29 +173,15 @@ private:
             mesh_.face_ends.push_back(static_cast<std::uint32_t>(mesh_.corners.size()));
             mesh_.face_materials.push_back(source.mMaterialIndex);
         }
-        if (mesh_.positions.size() >= RawMesh::no_vertex ||
-            mesh_.corners.size() >= RawMesh::no_vertex)
+        if (mesh_.is_too_large())
             throw InputError("it has more than 4294967294 vertices or corners, the limit");
         if (source.mMaterialIndex < is_used_.size()) is_used_[source.mMaterialIndex] = true;
     }
 
-    void append_vertices(const aiMesh& source, const glm::dmat4& transform) {
-        const glm::dmat3 linear(transform);
-        // Cofactors instead of the inverse keep the normals of singular and tiny transforms finite.
-        const double sign = glm::determinant(linear) < 0 ? -1 : 1;
-        const glm::dmat3 cofactors =
-            sign * glm::dmat3(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
-                              glm::cross(linear[0], linear[1]));
-        for (unsigned i = 0; i < source.mNumVertices; ++i) {
-            const glm::dvec4 placed = transform * glm::dvec4(to_glm(source.mVertices[i]), 1.0);
-            mesh_.positions.emplace_back(to_float(placed.x), to_float(placed.y),
-                                         to_float(placed.z));
-            glm::dvec3 normal(0);
-            if (source.HasNormals()) normal = cofactors * to_glm(source.mNormals[i]);
-            const double length = glm::length(normal);
-            mesh_.normals.emplace_back(length > 0 && length < 1e300 ? normal / length
-                                                                    : glm::dvec3(0));
-        }
+    void append_vertices(const aiMesh& source, const Placement& placement) {
+        for (unsigned i = 0; i < source.mNumVertices; ++i)
+            placement.add(to_glm(source.mVertices[i]),
+                          source.HasNormals() ? to_glm(source.mNormals[i]) : glm::dvec3(0), mesh_);
         if (!source.HasVertexColors(0) && mesh_.colours.empty()) return;
         mesh_.colours.resize(mesh_.positions.size(), glm::vec4(1));
         if (!source.HasVertexColors(0)) return;

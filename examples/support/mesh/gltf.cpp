@@ -8,16 +8,15 @@
 #include <string_view>
 #include <vector>
 
-#include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
-#include <glm/matrix.hpp>
+#include <glm/vec3.hpp>
 
 #include "gltf_accessor.hpp"
 #include "gltf_file.hpp"
 #include "gltf_materials.hpp"
 #include "gltf_nodes.hpp"
 #include "gltf_skin.hpp"
+#include "placement.hpp"
 #include "raw_mesh.hpp"
 #include "text.hpp"
 
@@ -155,7 +154,9 @@ private:
         add_morphs(primitive, weights, positions, normals);
         read_colours(attributes, first, positions.size());
         const bool mirrored = place(node, attributes, world, positions, normals);
-        add_triangles(primitive, mode, indices, first, positions.size(), mirrored);
+        const std::uint32_t material = use_material(primitive);
+        add_triangles(primitive, mode, indices, first, positions.size(), mirrored, material);
+        drop_unused_alphas(material, first);
     }
 
     // Its accessors have no data of their own.
@@ -289,35 +290,17 @@ private:
                              const glm::dmat4& world, const std::vector<glm::dvec3>& positions,
                              const std::vector<glm::dvec3>& normals) {
         const std::optional<GltfSkin> skin = open_skin(node, attributes, positions.size());
-        bool mirrored = false;
-        glm::dmat3 cofactors;
-        for (std::size_t i = 0; i < positions.size(); ++i) {
-            // Joints replace the transform of the node.
-            const glm::dmat4& matrix = skin ? skin->matrix_of(i) : world;
-            if (skin || i == 0) {
-                // Cofactors instead of the inverse keep the normals of singular transforms finite.
-                const glm::dmat3 linear(matrix);
-                const bool is_negative = glm::determinant(linear) < 0;
-                if (i == 0) mirrored = is_negative;
-                cofactors =
-                    (is_negative ? -1.0 : 1.0) * glm::dmat3(glm::cross(linear[1], linear[2]),
-                                                            glm::cross(linear[2], linear[0]),
-                                                            glm::cross(linear[0], linear[1]));
-            }
-            const glm::dvec4 placed = matrix * glm::dvec4(positions[i], 1);
-            mesh_.positions.emplace_back(to_float(placed.x), to_float(placed.y),
-                                         to_float(placed.z));
-            const glm::dvec3 normal = cofactors * normals[i];
-            const double length = glm::length(normal);
-            mesh_.normals.emplace_back(length > 0 && length < 1e300 ? normal / length
-                                                                    : glm::dvec3(0));
-        }
-        return mirrored;
+        // Joints replace the transform of the node.
+        const Placement first(skin && !positions.empty() ? skin->matrix_of(0) : world);
+        for (std::size_t i = 0; i < positions.size(); ++i)
+            (skin && i > 0 ? Placement(skin->matrix_of(i)) : first)
+                .add(positions[i], normals[i], mesh_);
+        return !positions.empty() && first.mirrors();
     }
 
     void add_triangles(const GltfValue& primitive, std::uint64_t mode,
                        const std::optional<GltfValue>& indices, std::size_t first,
-                       std::size_t vertices, bool mirrored) {
+                       std::size_t vertices, bool mirrored, std::uint32_t material) {
         std::optional<GltfAccessor> accessor;
         if (indices)
             accessor.emplace(file_, *indices, std::initializer_list<std::string_view>{"SCALAR"},
@@ -329,11 +312,10 @@ private:
         if (mode == 4 && corners % 3 != 0)
             primitive.fail("has " + std::to_string(corners) +
                            " corners of triangles, which is not a multiple of 3");
-        const std::uint32_t material = use_material(primitive);
         const std::size_t triangles =
             mode == 4 ? corners / 3 : std::max<std::size_t>(corners, 2) - 2;
-        if (mesh_.positions.size() >= RawMesh::no_vertex ||
-            triangles > (RawMesh::no_vertex - mesh_.corners.size()) / 3)
+        if (mesh_.positions.size() > RawMesh::most ||
+            triangles > (RawMesh::most - mesh_.corners.size()) / 3)
             primitive.fail("the meshes have more than 4294967294 vertices or corners, the limit");
         for (std::size_t t = 0; t < triangles; ++t) {
             std::array<std::size_t, 3> at = {3 * t, 3 * t + 1, 3 * t + 2};
@@ -346,11 +328,15 @@ private:
                 triangle[k] = index < vertices ? static_cast<std::uint32_t>(first + index)
                                                : RawMesh::no_vertex;
             }
-            if (is_masked(triangle, material)) continue;
+            if (count_masked(triangle, material)) continue;
             mesh_.corners.insert(mesh_.corners.end(), triangle.begin(), triangle.end());
             mesh_.face_ends.push_back(static_cast<std::uint32_t>(mesh_.corners.size()));
             mesh_.face_materials.push_back(material);
         }
+    }
+
+    // The alphas of vertices count only where the material blends, and for its mask.
+    void drop_unused_alphas(std::uint32_t material, std::size_t first) {
         if (material < materials_.size() && materials_[material].alpha != GltfAlpha::blend)
             for (std::size_t i = first; i < mesh_.colours.size(); ++i) mesh_.colours[i].a = 1;
     }
@@ -363,9 +349,10 @@ private:
         return static_cast<std::uint32_t>(material);
     }
 
-    // Whether a triangle lies below the alpha at which its material becomes visible.
-    [[nodiscard]] bool is_masked(const std::array<std::uint32_t, 3>& triangle,
-                                 std::uint32_t material) {
+    // Counts a triangle with corners below the alpha at which its material becomes visible. Returns whether
+    // all three are, so that it is not drawn.
+    [[nodiscard]] bool count_masked(const std::array<std::uint32_t, 3>& triangle,
+                                    std::uint32_t material) {
         if (material >= materials_.size() || materials_[material].alpha != GltfAlpha::mask)
             return false;
         std::size_t below = 0;

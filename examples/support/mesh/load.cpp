@@ -46,7 +46,7 @@ Mesh load_mesh(const std::filesystem::path& path) {
         if (text.starts_with("\xEF\xBB\xBF") && !is_binary_stl(text)) text.erase(0, 3);
         RawMesh raw = reader_of(path, text)(path, text);
         std::string().swap(text);
-        if (raw.positions.size() >= RawMesh::no_vertex || raw.corners.size() > RawMesh::no_vertex)
+        if (raw.is_too_large())
             throw InputError(name + " has " + std::to_string(raw.positions.size()) +
                              " vertices and " + std::to_string(raw.corners.size()) +
                              " corners of faces, the limit is 4294967294 each");

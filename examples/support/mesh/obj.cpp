@@ -112,7 +112,7 @@ private:
     void vertex() {
         const std::size_t values = words_.size() - 1;
         if (values != 3 && values != 4 && values != 6 && values != 7) fail_values("3, 4, 6 or 7");
-        if (positions_.size() == RawMesh::no_vertex) fail("more than 4294967295 vertices");
+        if (positions_.size() == RawMesh::most) fail("more than 4294967294 vertices");
         positions_.emplace_back(number(1), number(2), number(3));
         if (values == 4 && number(4) != 1) ++weights_;
         if (values < 6) {
@@ -169,7 +169,7 @@ private:
             ++mesh_.drops.points_and_lines;
             return;
         }
-        if (corners_.size() + words_.size() >= RawMesh::no_vertex)
+        if (corners_.size() + words_.size() > RawMesh::most)
             fail("more than 4294967294 corners of polygons");
         for (std::size_t i = 1; i < words_.size(); ++i) corners_.push_back(corner(words_[i]));
         mesh_.face_ends.push_back(static_cast<std::uint32_t>(corners_.size()));
@@ -295,8 +295,8 @@ private:
             repeated.try_emplace(std::uint64_t{vertex} << 32 | normal,
                                  static_cast<std::uint32_t>(mesh_.positions.size()));
         if (is_new) {
-            if (mesh_.positions.size() == RawMesh::no_vertex)
-                fail("more than 4294967295 pairs of a vertex and a normal");
+            if (mesh_.positions.size() == RawMesh::most)
+                fail("more than 4294967294 pairs of a vertex and a normal");
             mesh_.positions.push_back(mesh_.positions[vertex]);
             mesh_.normals.push_back(value);
             if (!mesh_.colours.empty()) mesh_.colours.push_back(mesh_.colours[vertex]);

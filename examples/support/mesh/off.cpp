@@ -111,11 +111,11 @@ private:
         return colour;
     }
 
-    // Words that are left on the line.
+    // The number of words that are left on the line.
     [[nodiscard]] std::size_t words_left() const {
         TextCursor ahead = words_;
         std::size_t count = 0;
-        while (count < 8 && !ahead.next_word_on_line().empty()) ++count;
+        while (!ahead.next_word_on_line().empty()) ++count;
         return count;
     }
 

@@ -18,6 +18,8 @@ namespace support {
 /// coordinate may be NaN.
 struct RawMesh {
     static constexpr std::uint32_t no_vertex = 0xFFFFFFFF;
+    /// The limit of vertices, and that of corners.
+    static constexpr std::uint32_t most = no_vertex - 1;
 
     std::vector<glm::vec3> positions;
     /// One for each position, of any length, 0 where the file has none; or empty.
@@ -35,6 +37,10 @@ struct RawMesh {
     std::uint64_t ignored_textures = 0;  ///< textures that the file names for what is drawn
     UpAxis up = UpAxis::unknown;         ///< of the format or the file, where it has one
     std::vector<std::string> notes;      ///< what else was left out, one line each, with its place
+
+    [[nodiscard]] bool is_too_large() const {
+        return positions.size() > most || corners.size() > most;
+    }
 };
 
 /// A reader of one format. `text` is the whole file; `path` is for messages and for files beside it.

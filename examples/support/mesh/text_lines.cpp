@@ -17,27 +17,19 @@ bool is_comment(std::string_view line) { return !line.empty() && trimmed(line).s
 
 }  // namespace
 
-TextLines::TextLines(std::string_view text) : text_(text) {
-    if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
-}
+TextLines::TextLines(std::string_view text)
+    : text_(text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text), physical_lines_(text_) {}
 
 std::string_view TextLines::physical_line() {
-    const std::size_t begin = at_;
-    const std::size_t end = text_.find_first_of("\r\n", begin);
-    ++physical_lines_;
-    is_open_ = end == std::string_view::npos;
-    if (is_open_) {
-        at_ = text_.size();
-        return text_.substr(begin);
-    }
-    at_ = end + (text_.substr(end).starts_with("\r\n") ? 2 : 1);
-    return text_.substr(begin, end - begin);
+    const std::string_view line = physical_lines_.rest_of_line();
+    is_open_ = line.data() + line.size() == text_.data() + text_.size();
+    return line;
 }
 
 bool TextLines::next() {
-    if (at_ >= text_.size()) return false;
+    if (physical_lines_.at_end()) return false;
+    number_ = physical_lines_.line();
     line_ = physical_line();
-    number_ = physical_lines_;
     if (!trimmed(line_).ends_with('\\') || is_comment(line_)) return true;
     joined_.clear();
     for (std::string_view part = line_;; part = physical_line()) {
@@ -46,7 +38,7 @@ bool TextLines::next() {
         if (continues) part.remove_suffix(1);
         joined_.append(part).append(" ");
         if (!continues) break;
-        is_unfinished_ = at_ >= text_.size();
+        is_unfinished_ = physical_lines_.at_end();
         if (is_unfinished_) break;
     }
     line_ = joined_;

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "text.hpp"
+
 namespace support {
 
 /// Walks through the lines of an OBJ or MTL file. LF, CR and CRLF end a line. A backslash at its end
@@ -30,8 +32,8 @@ private:
     std::string_view physical_line();
 
     std::string_view text_;
-    std::size_t at_ = 0;
-    std::uint64_t physical_lines_ = 0, number_ = 0;
+    TextCursor physical_lines_;
+    std::uint64_t number_ = 0;
     std::string_view line_;
     std::string joined_;
     bool is_open_ = false, is_unfinished_ = false;

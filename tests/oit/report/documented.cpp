@@ -14,8 +14,8 @@ namespace {
 
 std::string document() { return read_file(CELLIST_TRANSPARENCY_DOCUMENT); }
 
-// The rows of the first table behind a heading, without the line of names.
-std::vector<std::string> rows_behind(const std::string& text, const std::string& heading) {
+// The rows of the first table after a heading, without the line of names.
+std::vector<std::string> rows_after(const std::string& text, const std::string& heading) {
     std::istringstream lines(text.substr(text.find("\n" + heading + "\n")));
     std::vector<std::string> rows;
     for (std::string line; std::getline(lines, line);) {
@@ -39,7 +39,7 @@ std::string cells_of(const oit::MethodInfo& method) {
 }
 
 TEST_CASE("the document has the table of methods") {
-    const std::vector<std::string> rows = rows_behind(document(), "## Methods");
+    const std::vector<std::string> rows = rows_after(document(), "## Methods");
     REQUIRE(rows.size() == oit::methods().size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const std::string expected = cells_of(oit::methods()[i]);

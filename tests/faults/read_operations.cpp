@@ -1,0 +1,57 @@
+// What reads lists.
+#include "checks.hpp"
+#include "operations.hpp"
+
+namespace cellist::test {
+namespace {
+
+void lengths(Scene& scene) { require_lengths(scene.lists.lengths(), scene.oracle); }
+void pack(Scene& scene) { require_packed(scene.lists.pack(), scene.oracle); }
+void pack_a_member(Scene& scene) { require_packed_ids(scene.lists.pack(&Item::id), scene.oracle); }
+void download(Scene& scene) { require_same(scene.lists.download(), scene.oracle); }
+void validate(Scene& scene) { require_sound(scene.lists.validate()); }
+
+/// Three results are on their way at once.
+void read_later(Scene& scene) {
+    Pending<HostLists<Item>> lists = scene.lists.download_async();
+    Pending<Lengths> lengths = scene.lists.lengths_async();
+    Pending<Validation> validation = scene.lists.validate_async();
+    require_same(lists.get(), scene.oracle);
+    require_lengths(lengths.get(), scene.oracle);
+    require_sound(validation.get());
+}
+
+void read_in_a_kernel(Scene& scene) {
+    const Buffer<cl_uint2> sums(scene.device, cell_count);
+    scene.read.run(Range::padded(cell_count, 32), scene.lists, sums);
+    const std::vector<cl_uint2> found = sums.download();
+    for (cl_uint cell = 0; cell < cell_count; ++cell) {
+        cl_uint2 expected{{0, 0}};
+        const auto [begin, end] = scene.oracle.equal_range(cell);
+        for (auto entry = begin; entry != end; ++entry) {
+            ++expected.s[0];
+            expected.s[1] += entry->second.id;
+        }
+        REQUIRE(found[cell].s[0] == expected.s[0]);
+        REQUIRE(found[cell].s[1] == expected.s[1]);
+    }
+}
+
+constexpr auto full = Contents::full;
+constexpr auto repeated = Use::repeated;
+
+constexpr Operation table[] = {
+    {"lengths", full, lengths},
+    {"pack", full, pack, repeated},
+    {"pack a member", full, pack_a_member, repeated},
+    {"download", full, download},
+    {"validate", full, validate},
+    {"read later", full, read_later, repeated},
+    {"read in a kernel", full, read_in_a_kernel},
+};
+
+}  // namespace
+
+std::span<const Operation> read_operations() { return table; }
+
+}  // namespace cellist::test
