@@ -29,6 +29,11 @@ step() {
     exit 1
 }
 
+# The time since the script began.
+elapsed() {
+    printf '%d min %d s' $((SECONDS / 60)) $((SECONDS % 60))
+}
+
 # Shows the last [done/total] of the build's log, on one line of the terminal, until it is killed.
 show_progress() {
     local name=$1 log=$2 counter

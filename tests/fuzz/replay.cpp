@@ -1,4 +1,4 @@
-// Runs a target on the files of a folder, without a fuzzer: replay NAME FOLDER
+// Runs a target on the files of folders, without a fuzzer: replay NAME FOLDER...
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -9,13 +9,14 @@
 #include "input.hpp"
 
 int main(int count, char** arguments) {
-    if (count != 3) {
-        std::cerr << "usage: " << arguments[0] << " NAME FOLDER\n";
+    if (count < 3) {
+        std::cerr << "usage: " << arguments[0] << " NAME FOLDER...\n";
         return 2;
     }
     std::vector<std::filesystem::path> paths;
-    for (const auto& entry : std::filesystem::directory_iterator(arguments[2]))
-        paths.push_back(entry.path());
+    for (int i = 2; i < count; ++i)
+        for (const auto& entry : std::filesystem::directory_iterator(arguments[i]))
+            paths.push_back(entry.path());
     std::sort(paths.begin(), paths.end());
     for (const std::filesystem::path& path : paths) {
         std::cerr << path.filename().string() << std::endl;  // the last one, if it ends here

@@ -1,7 +1,5 @@
 #include "frame/fragment_source.hpp"
 
-#include <initializer_list>
-
 #include "frame/blend_function.hpp"
 #include "oit_kernels.hpp"
 
@@ -14,6 +12,21 @@ std::string joined(std::initializer_list<std::string_view> parts) {
     std::string text;
     for (const std::string_view part : parts) text.append(part).append("\n");
     return text;
+}
+
+// Of the lines `#define NAME ...`, those whose name is in the text. Programs that differ only in
+// other macros are one program, which the driver compiles once.
+std::string defines_named(std::string_view defines, std::string_view text) {
+    constexpr std::string_view directive = "#define ";
+    std::string named;
+    while (!defines.empty()) {
+        const std::string_view line = defines.substr(0, defines.find('\n') + 1);
+        const std::string_view rest = line.substr(directive.size());
+        if (text.find(rest.substr(0, rest.find_first_of(" \n"))) != std::string_view::npos)
+            named += line;
+        defines.remove_prefix(line.size());
+    }
+    return named;
 }
 
 std::vector<const support::Mesh*> meshes_of(const Scene& scene) {
@@ -94,13 +107,13 @@ raster::Sampling sampling_of(const Quality& quality) {
 FragmentSource::Opaque::Passes::Passes(const FragmentSource& source)
     : triangles(source.device_, source.projection_, chosen(source.frame_.scene, true)),
       depth(source.device_, sampling_of(source.frame_.quality),
-            joined({source.defines_, kernels::shading_clh, kernels::opaque_depth_cl}),
+            source.with_defines({kernels::shading_clh, kernels::opaque_depth_cl}),
             "opaque_depth.cl", cellist::type<OitFrame>, cellist::type<Material>),
       owner(source.device_, sampling_of(source.frame_.quality),
-            joined({source.defines_, kernels::shading_clh, kernels::opaque_owner_cl}),
+            source.with_defines({kernels::shading_clh, kernels::opaque_owner_cl}),
             "opaque_owner.cl", cellist::type<OitFrame>, cellist::type<Material>),
       colour(source.device_, sampling_of(source.frame_.quality),
-             joined({source.defines_, kernels::shading_clh, kernels::opaque_colour_cl}),
+             source.with_defines({kernels::shading_clh, kernels::opaque_colour_cl}),
              "opaque_colour.cl", cellist::type<OitFrame>, cellist::type<Material>),
       owners(source.device_, source.samples()) {}
 
@@ -129,10 +142,10 @@ FragmentSource::FragmentSource(const cellist::Device& device, const Frame& frame
     if (features_.opaque) opaque_ = std::make_unique<Opaque>(*this);
     if (resolves_samples(frame.quality)) {
         sample_image_.emplace(device, frame.pixels() * samples_of(frame.quality));
-        average_.emplace(device,
-                         cellist::Source{.text = joined({defines_, kernels::average_cl}),
-                                         .file_name = "average.cl"},
-                         "oit_average");
+        average_.emplace(
+            device,
+            cellist::Source{.text = with_defines({kernels::average_cl}), .file_name = "average.cl"},
+            "oit_average");
     }
     if (frame.blend_function) check_blend_function(device, defines_, *frame.blend_function);
 }
@@ -186,9 +199,14 @@ cellist::Shape FragmentSource::shape() const {
 
 raster::Sampling FragmentSource::sampling() const { return sampling_of(frame_.quality); }
 
+std::string FragmentSource::with_defines(std::initializer_list<std::string_view> parts) const {
+    const std::string text = joined(parts);
+    return defines_named(defines_, text) + text;
+}
+
 std::string FragmentSource::pass_text(std::string_view source) const {
-    return joined({defines_, "#define OIT_PASS", kernels::shading_clh, kernels::fragment_clh,
-                   source, kernels::surface_clh});
+    return with_defines({"#define OIT_PASS", kernels::shading_clh, kernels::fragment_clh, source,
+                         kernels::surface_clh});
 }
 
 cellist::Source FragmentSource::screen_source(std::string_view source,

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -156,6 +157,8 @@ private:
     }
 
     [[nodiscard]] raster::Sampling sampling() const;
+    // The parts, after the macros that they name.
+    [[nodiscard]] std::string with_defines(std::initializer_list<std::string_view> parts) const;
     [[nodiscard]] std::string pass_text(std::string_view source) const;
     [[nodiscard]] cellist::Source screen_source(std::string_view source,
                                                 const std::string& file_name) const;

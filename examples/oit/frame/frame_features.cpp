@@ -147,7 +147,6 @@ std::string defines_of(const Frame& frame, const FrameFeatures& features) {
     if (quality.epsilon > 0) text += "#define OIT_EARLY_END\n";
     if (quality.reduce > 1) text += "#define OIT_REDUCED\n";
     if (frame.memory_bytes) text += "#define OIT_SLICES\n";
-    if (quality.layers) text += define("OIT_LAYERS", *quality.layers);
     return text;
 }
 

@@ -20,12 +20,13 @@ bool picks_nearest(const Quality& quality) {
     return quality.layers && *quality.layers <= nearest_max;
 }
 
-ListReader blending_reader(const std::string& define) {
-    return {define + std::string(kernels::lists_cl), "lists.cl", "oit_resolve_lists"};
+std::string define(const std::string& name, std::uint32_t value) {
+    return "#define " + name + " " + std::to_string(value) + "\n";
 }
 
-ListReader nearest_reader(std::uint32_t nearest) {
-    return blending_reader("#define OIT_NEAREST " + std::to_string(nearest) + "\n");
+ListReader blending_reader(const Quality& quality, std::string defines = {}) {
+    if (quality.layers) defines += define("OIT_LAYERS", *quality.layers);
+    return {defines.append(kernels::lists_cl), "lists.cl", "oit_resolve_lists"};
 }
 
 bool needs_sorting(const Quality& quality, const std::optional<ListReader>& reader) {
@@ -34,7 +35,8 @@ bool needs_sorting(const Quality& quality, const std::optional<ListReader>& read
 
 ListReader reader_of(const Quality& quality, const std::optional<ListReader>& reader) {
     if (reader) return *reader;
-    return needs_sorting(quality, reader) ? blending_reader({}) : nearest_reader(*quality.layers);
+    if (needs_sorting(quality, reader)) return blending_reader(quality);
+    return blending_reader(quality, define("OIT_NEAREST", *quality.layers));
 }
 
 // The device is waited for where the length of the lists is not known: in the first frame, and in others that
@@ -127,7 +129,8 @@ private:
         }
         if (may_sort_on_the_way_ && longest <= sorted_on_the_way_max)
             sorter_.emplace(kernel_of(blending_reader(
-                "#define OIT_SORTED " + std::to_string(std::bit_ceil(longest + 1)) + "\n")));
+                source_.frame().quality,
+                define("OIT_SORTED", static_cast<std::uint32_t>(std::bit_ceil(longest + 1))))));
         else
             sorter_.reset();
         longer_.fill(0);
