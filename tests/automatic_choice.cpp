@@ -1,10 +1,10 @@
 // What Storage::automatic chooses, from invented times. No device, no clock.
 #include <iostream>
 
-#include "storage_tuner.hpp"
 #include "support/errors.hpp"
 #include "support/random.hpp"
 #include "support/storages.hpp"
+#include "tune/storage_tuner.hpp"
 
 namespace cellist::test {
 namespace {

@@ -1,5 +1,5 @@
 // Sources include the library's headers without a path, and their errors have the user's own lines.
-#include "program_text.hpp"
+#include "device/program_text.hpp"
 #include "support/errors.hpp"
 #include "support/inserts.hpp"
 

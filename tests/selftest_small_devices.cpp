@@ -2,7 +2,7 @@
 #include <sstream>
 
 #include "command/selftest.hpp"
-#include "device_state.hpp"
+#include "device/device_state.hpp"
 #include "support/errors.hpp"
 
 namespace cellist::test {

@@ -1,6 +1,6 @@
 // What sorts, packs and validates takes its sizes from the device: one with small work-groups and little
 // local memory.
-#include "device_state.hpp"
+#include "device/device_state.hpp"
 #include "support/inserts.hpp"
 #include "support/internals.hpp"
 #include "support/sorted.hpp"

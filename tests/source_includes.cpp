@@ -2,9 +2,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "device_state.hpp"
-#include "program_text.hpp"
-#include "recent.hpp"
+#include "device/device_state.hpp"
+#include "device/program_text.hpp"
+#include "device/recent.hpp"
 #include "support/errors.hpp"
 #include "support/inserts.hpp"
 

@@ -7,9 +7,9 @@
 
 #include <sys/wait.h>
 
-#include "profile.hpp"
 #include "support/errors.hpp"
 #include "support/skip.hpp"
+#include "tune/profile.hpp"
 
 namespace cellist::test {
 namespace {

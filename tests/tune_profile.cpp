@@ -7,9 +7,9 @@
 
 #include <sys/stat.h>
 
-#include "profile.hpp"
 #include "support/errors.hpp"
 #include "support/inserts.hpp"
+#include "tune/profile.hpp"
 
 namespace cellist::test {
 namespace {

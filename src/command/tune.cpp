@@ -9,9 +9,9 @@
 
 #include <cellist/cellist.hpp>
 
-#include "container_storage.hpp"
-#include "profile.hpp"
-#include "storage_tuner.hpp"
+#include "storage/container_storage.hpp"
+#include "tune/profile.hpp"
+#include "tune/storage_tuner.hpp"
 
 namespace cellist::command {
 

@@ -12,8 +12,8 @@
 
 #include <cellist/cellist.hpp>
 
-#include "expression.hpp"
 #include "input.hpp"
+#include "sort/expression.hpp"
 
 namespace cellist::fuzz {
 

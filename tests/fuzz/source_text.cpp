@@ -6,8 +6,8 @@
 
 #include <cellist/kernel.hpp>
 
+#include "device/program_text.hpp"
 #include "input.hpp"
-#include "program_text.hpp"
 
 namespace cellist::fuzz {
 namespace {

@@ -3,8 +3,8 @@
 // What tests reach of a container that users do not: the division of sorts, and the tuner.
 #include <cellist/lists.hpp>
 
-#include "automatic.hpp"
-#include "sort.hpp"
+#include "sort/sort.hpp"
+#include "tune/automatic.hpp"
 
 namespace cellist::test {
 

@@ -1,0 +1,256 @@
+#include <algorithm>
+#include <atomic>
+#include <cctype>
+#include <charconv>
+#include <cstdlib>
+#include <random>
+
+#include <cellist/device.hpp>
+
+#include "device/device_state.hpp"
+#include "device/program_text.hpp"
+
+namespace cellist {
+
+namespace {
+
+using detail::check;
+
+/// Every device of every platform. No platform and no device are not errors.
+std::vector<cl::Device> all_devices() {
+    constexpr cl_int platform_not_found = -1001;  // CL_PLATFORM_NOT_FOUND_KHR
+    cl_uint count = 0;
+    cl_int code = clGetPlatformIDs(0, nullptr, &count);
+    if (code == platform_not_found || (code == CL_SUCCESS && count == 0)) return {};
+    check("clGetPlatformIDs", code);
+    std::vector<cl_platform_id> ids(count);
+    check("clGetPlatformIDs", clGetPlatformIDs(count, ids.data(), nullptr));
+    std::vector<cl::Device> devices;
+    for (const cl_platform_id platform : ids) {
+        code = clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 0, nullptr, &count);
+        if (code == CL_DEVICE_NOT_FOUND || (code == CL_SUCCESS && count == 0)) continue;
+        check("clGetDeviceIDs", code);
+        std::vector<cl_device_id> handles(count);
+        check("clGetDeviceIDs",
+              clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, count, handles.data(), nullptr));
+        for (const cl_device_id handle : handles) devices.emplace_back(handle, true);
+    }
+    return devices;
+}
+
+/// One property of a queue. Not by the bindings, which release what they could not retain.
+template <class T>
+T queue_info(const cl::CommandQueue& queue, cl_command_queue_info what) {
+    T value{};
+    check("clGetCommandQueueInfo",
+          clGetCommandQueueInfo(queue(), what, sizeof value, &value, nullptr));
+    return value;
+}
+
+/// The text up to the first NUL: drivers differ in whether they count it.
+std::string trimmed(std::string text) {
+    text.resize(std::min(text.size(), text.find('\0')));
+    text.erase(0, text.find_first_not_of(' '));
+    text.erase(text.find_last_not_of(' ') + 1);
+    return text;
+}
+
+// Whether kernels can tell the threads of this processor apart: see threads.clh.
+#if defined(__linux__) && (defined(__x86_64__) || defined(__aarch64__))
+constexpr bool knows_threads = true;
+#else
+constexpr bool knows_threads = false;
+#endif
+
+DeviceInfo describe(const cl::Device& device) {
+    const std::string extensions = device.getInfo<CL_DEVICE_EXTENSIONS>();
+    const auto has = [&](const char* name) { return extensions.find(name) != std::string::npos; };
+    DeviceInfo info;
+    info.name = trimmed(device.getInfo<CL_DEVICE_NAME>());
+    info.platform =
+        trimmed(cl::Platform(device.getInfo<CL_DEVICE_PLATFORM>()).getInfo<CL_PLATFORM_NAME>());
+    info.version = trimmed(device.getInfo<CL_DEVICE_VERSION>());
+    info.driver = trimmed(device.getInfo<CL_DRIVER_VERSION>());
+    info.type = device.getInfo<CL_DEVICE_TYPE>();
+    info.global_memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+    info.max_allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+    info.local_memory_bytes = device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
+    info.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+    info.max_work_group_size = device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
+    info.int64_atomics = has("cl_khr_int64_base_atomics");
+    info.sub_groups = has("cl_khr_subgroups") || has("cl_intel_subgroups");
+    info.fp64 = device.getInfo<CL_DEVICE_DOUBLE_FP_CONFIG>() != 0;
+    if (has("cl_nv_device_attribute_query"))
+        info.warp_aggregation = device.getInfo<CL_DEVICE_COMPUTE_CAPABILITY_MAJOR_NV>() >= 7;
+    info.one_thread_per_work_group = knows_threads &&
+                                     info.platform == "Portable Computing Language" &&
+                                     info.type == CL_DEVICE_TYPE_CPU && info.int64_atomics;
+    return info;
+}
+
+std::string lower(std::string_view text) {
+    std::string out(text);
+    std::transform(out.begin(), out.end(), out.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return out;
+}
+
+/// Empty where there is none to be had.
+std::string build_log(const cl::Program& program, const cl::Device& device) {
+    try {
+        return trimmed(program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device));
+    } catch (const cl::Error&) {
+        return {};
+    }
+}
+
+constexpr const char* no_platform =
+    "no OpenCL device found: install a driver, or PoCL for the CPU (pocl-opencl-icd)";
+
+}  // namespace
+
+Device Device::choose() {
+    const char* selector = std::getenv("CELLIST_DEVICE");
+    if (selector != nullptr && *selector != '\0') return choose(selector);
+    return detail::opencl([] {
+        const std::vector<cl::Device> devices = all_devices();
+        if (devices.empty()) throw Error(no_platform);
+        const auto gpu = std::find_if(devices.begin(), devices.end(), [](const cl::Device& device) {
+            return (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_GPU) != 0;
+        });
+        return Device(gpu != devices.end() ? *gpu : devices.front());
+    });
+}
+
+Device Device::choose(std::string_view selector) {
+    return detail::opencl([&] {
+        const std::vector<cl::Device> devices = all_devices();
+        if (devices.empty()) throw Error(no_platform);
+
+        std::string known;
+        for (std::size_t i = 0; i < devices.size(); ++i)
+            known += (i == 0 ? "" : ", ") + std::to_string(i) + " = " + describe(devices[i]).name;
+
+        std::size_t index = 0;
+        const char* end = selector.data() + selector.size();
+        const auto [stop, error] = std::from_chars(selector.data(), end, index);
+        if (error != std::errc::invalid_argument && stop == end) {
+            if (error == std::errc() && index < devices.size()) return Device(devices[index]);
+            throw Error("no device has the index " + std::string(selector) +
+                        "; there are: " + known);
+        }
+
+        for (const cl::Device& device : devices) {
+            const DeviceInfo info = describe(device);
+            if (!selector.empty() &&
+                lower(info.name + "\n" + info.platform).find(lower(selector)) != std::string::npos)
+                return Device(device);
+        }
+        throw Error("no device is called '" + std::string(selector) + "'; there are: " + known);
+    });
+}
+
+Device::Device(const cl::Device& device)
+    : state_("a Device", std::make_shared<detail::DeviceState>()) {
+    detail::opencl([&] {
+        state_->context = cl::Context(device);
+        state_->queue = cl::CommandQueue(state_->context, device);
+        state_->staging = std::make_shared<detail::PinnedStaging>(state_->context, state_->queue);
+        state_->device = cl::Device(device);
+        state_->info = describe(device);
+        state_->max_constant_bytes = device.getInfo<CL_DEVICE_MAX_CONSTANT_BUFFER_SIZE>();
+    });
+}
+
+Device::Device(cl::Context context, cl::CommandQueue queue)
+    : state_("a Device", std::make_shared<detail::DeviceState>()) {
+    detail::opencl([&] {
+        if (queue_info<cl_context>(queue, CL_QUEUE_CONTEXT) != context())
+            throw Error("the command queue belongs to another context");
+        state_->out_of_order =
+            (queue_info<cl_command_queue_properties>(queue, CL_QUEUE_PROPERTIES) &
+             CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0;
+        state_->device = cl::Device(queue_info<cl_device_id>(queue, CL_QUEUE_DEVICE), true);
+        state_->info = describe(state_->device);
+        state_->max_constant_bytes = state_->device.getInfo<CL_DEVICE_MAX_CONSTANT_BUFFER_SIZE>();
+        state_->context = std::move(context);
+        state_->queue = std::move(queue);
+        state_->staging = std::make_shared<detail::PinnedStaging>(state_->context, state_->queue);
+    });
+}
+
+Device::Device(Device&&) noexcept = default;
+Device& Device::operator=(Device&&) noexcept = default;
+Device::~Device() = default;
+
+std::vector<DeviceInfo> Device::all() {
+    return detail::opencl([] {
+        std::vector<DeviceInfo> infos;
+        for (const cl::Device& device : all_devices()) infos.push_back(describe(device));
+        return infos;
+    });
+}
+
+const DeviceInfo& Device::info() const { return state_->info; }
+const cl::Context& Device::context() const { return state_->context; }
+const cl::CommandQueue& Device::queue() const { return state_->queue; }
+
+void Device::finish() const {
+    detail::opencl([&] { state_->queue.finish(); });
+}
+
+void Device::enqueue_wait(const std::vector<cl::Event>& events) const {
+    if (events.empty()) return;
+    detail::opencl([&] { state_->queue.enqueueBarrierWithWaitList(&events); });
+}
+
+cl::Event Device::enqueue_marker() const { return state_->marker(); }
+
+namespace detail {
+
+const cl::CommandQueue& DeviceState::ordered_queue() const {
+    if (out_of_order) opencl([&] { queue.enqueueBarrierWithWaitList(); });
+    return queue;
+}
+
+cl::Event DeviceState::marker() const {
+    return opencl([&] {
+        cl::Event event;
+        queue.enqueueMarkerWithWaitList(nullptr, &event);
+        return event;
+    });
+}
+
+const std::optional<Profile>& DeviceState::profile() {
+    std::call_once(profile_once_, [&] { profile_ = load_profile(info); });
+    return profile_;
+}
+
+cl::Program DeviceState::program(const std::string& source, const std::string& options) {
+    const std::string key = options + '\0' + source;
+    const std::lock_guard lock(mutex_);
+    if (const cl::Program* known = programs_.find(key)) return opencl([&] { return *known; });
+    if (includes_files(source, options)) {
+        // Drivers cache programs as well, and some ignore included files: no text is used twice.
+        static std::atomic<std::uint64_t> count = std::random_device{}();
+        return build_program(source + "\n// " + std::to_string(++count) + "\n", options);
+    }
+    return opencl([&] { return programs_.add(key, build_program(source, options)); });
+}
+
+cl::Program DeviceState::build_program(const std::string& source,
+                                       const std::string& options) const {
+    return opencl([&] {
+        cl::Program program(context, source);
+        // Not by the bindings, which ask for the log of every build, and where that fails, throw
+        // that.
+        const cl_int code =
+            clBuildProgram(program(), 1, &device(), options.c_str(), nullptr, nullptr);
+        if (code != CL_SUCCESS)
+            throw OpenClError("clBuildProgram", code, build_log(program, device));
+        return program;
+    });
+}
+
+}  // namespace detail
+}  // namespace cellist

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include <cellist/device.hpp>
+#include <cellist/error.hpp>
+
+#include "device/pinned_staging.hpp"
+#include "device/recent.hpp"
+#include "tune/profile.hpp"
+
+namespace cellist::detail {
+
+/// What a Device and everything made from it share.
+struct DeviceState {
+    cl::Context context;
+    cl::CommandQueue queue;
+    cl::Device device;
+    DeviceInfo info;
+    bool out_of_order = false;             ///< the queue
+    std::uint64_t max_constant_bytes = 0;  ///< of a buffer in constant memory
+    std::shared_ptr<PinnedStaging> staging;
+
+    /// The queue, for one command that starts after all that were enqueued before.
+    const cl::CommandQueue& ordered_queue() const;
+    /// Completes when all that was enqueued has.
+    [[nodiscard]] cl::Event marker() const;
+
+    /// The program with this source and these options. Builds it unless it is among the last ones.
+    /// Always builds it if the source or the options include other files, which may have changed.
+    /// Throws OpenClError with the compiler's log. Any thread may call it.
+    cl::Program program(const std::string& source, const std::string& options);
+
+    /// What `cellist tune` has stored of the device. Read the first time; any thread may call it.
+    const std::optional<Profile>& profile();
+
+    /// Programs that are kept. One takes about 1 MB of the host under PoCL.
+    static constexpr std::size_t programs_max = 128;
+
+private:
+    [[nodiscard]] cl::Program build_program(const std::string& source,
+                                            const std::string& options) const;
+
+    std::mutex mutex_;
+    std::once_flag profile_once_;
+    std::optional<Profile> profile_;
+    Recent<std::string, cl::Program> programs_{programs_max};  ///< by options and source
+};
+
+/// Throws OpenClError if a call of the C interface has failed.
+inline void check(const char* call, cl_int code) {
+    if (code != CL_SUCCESS) throw OpenClError(call, code);
+}
+
+/// A count of 64 bits that kernels keep in two words.
+inline std::uint64_t wide(cl_uint low, cl_uint high) { return (std::uint64_t{high} << 32) | low; }
+
+/// Places for the threads of a device that has some (threads.clh): twice as many, so that a table
+/// of them is never crowded; a power of two.
+inline cl_uint thread_slots_of(const DeviceInfo& device) {
+    return std::bit_ceil(std::max(2 * device.compute_units, 8U));
+}
+
+/// Runs OpenCL calls and turns their failure into the library's error.
+template <class Call>
+decltype(auto) opencl(Call&& call) {
+    try {
+        return call();
+    } catch (const cl::Error& error) {
+        throw OpenClError(error.what(), error.err());
+    }
+}
+
+}  // namespace cellist::detail

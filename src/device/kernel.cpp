@@ -1,0 +1,292 @@
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <map>
+#include <numeric>
+#include <span>
+
+#include <cellist/kernel.hpp>
+
+#include "cellist_kernels.hpp"
+#include "device/device_state.hpp"
+#include "device/other_queues.hpp"
+#include "device/parameter.hpp"
+#include "device/program_text.hpp"
+#include "lists/build.hpp"
+#include "storage/view.hpp"
+
+namespace cellist {
+
+namespace {
+
+using detail::Arguments;
+using detail::opencl;
+using detail::Parameter;
+using detail::ProgramText;
+
+/// The part of a program that defines the adapted structs.
+constexpr auto structs = "cellist/structs";
+
+/// What a device has, unless the build options define it.
+void add_switch(ProgramText& whole, const std::string& name, bool on) {
+    whole.add(
+        "#ifndef CELLIST_" + name + "\n#define CELLIST_" + name + (on ? " 1" : " 0") + "\n#endif",
+        "CELLIST_" + name);
+}
+
+ProgramText whole_source(const Source& source, const detail::Definitions& definitions,
+                         cl_uint modes, const DeviceInfo& device) {
+    bool uses_glm = false;
+    const std::string text = detail::without_library_includes(source.text, uses_glm);
+    detail::Definitions all = definitions;
+    if (uses_glm) all.add(detail::glm_source());
+    ProgramText whole;
+    // Hides the macros of the build options from the library's text; only the user's source sees
+    // them.
+    const std::vector<std::string> macros = detail::defined_macros(source.options);
+    std::string hide, show;
+    for (const std::string& macro : macros) {
+        hide += "#pragma push_macro(\"" + macro + "\")\n#undef " + macro + "\n";
+        show.insert(0, "#pragma pop_macro(\"" + macro + "\")\n");
+    }
+    whole.add(hide, "options");
+    whole.add("#define CELLIST_MODES " + std::to_string(modes) + "u", "modes");
+    add_switch(whole, "WARP_AGGREGATION", device.warp_aggregation);
+    add_switch(whole, "ONE_THREAD_PER_WORK_GROUP", device.one_thread_per_work_group);
+    whole.add(kernels::view_h, "cellist/view.h");
+    whole.add(kernels::warp_clh, "cellist/warp.clh");
+    whole.add(kernels::threads_clh, "cellist/threads.clh");
+    whole.add(kernels::allocation_clh, "cellist/allocation.clh");
+    whole.add(kernels::linked_clh, "cellist/linked.clh");
+    whole.add(kernels::counted_clh, "cellist/counted.clh");
+    whole.add(kernels::fixed_clh, "cellist/fixed.clh");
+    whole.add(kernels::nearest_clh, "cellist/nearest.clh");
+    whole.add(kernels::lists_clh, "cellist/lists.clh");
+    whole.add(all.source(), structs);
+    whole.add(show, "options");
+    whole.add(text, source.file_name);
+    return whole;
+}
+
+/// Says which struct or member the device's compiler does not accept, and why; empty for other
+/// errors.
+std::string complaint_about_structs(const ProgramText& whole, const std::string& log,
+                                    const DeviceInfo& device) {
+    const std::vector<ProgramText::Complaint> errors = whole.errors(log, structs);
+    if (errors.empty()) return {};
+    // A member that the compiler drops changes the layout, too.
+    const auto name = std::find_if(errors.begin(), errors.end(), [](const auto& error) {
+        return error.message.find("negative") == std::string_view::npos;
+    });
+    const std::string_view line = name == errors.end() ? errors.front().line : name->line;
+    constexpr std::string_view because = "  // ";
+    const std::size_t comment = line.rfind(because);
+    if (comment == std::string_view::npos) return {};
+    const std::string subject(line.substr(comment + because.size()));
+    if (name == errors.end())
+        return "the layout of a struct differs between the host and " + device.name + ": " +
+               subject + "\n";
+    return "the compiler of " + device.name + " does not accept " + subject +
+           ": where its name is a word or a macro of OpenCL C, or of the library, rename it\n";
+}
+
+/// A hint that names the macros of the build options that replace a member, or that the log
+/// mentions.
+std::string macro_hint(const std::string& options, const detail::Definitions& definitions,
+                       const std::string& log) {
+    const bool in_log = log.find("<command line>") != std::string::npos;
+    const auto names_member = [&](const std::string& macro) {
+        return std::any_of(
+            definitions.records.begin(), definitions.records.end(), [&](const auto& record) {
+                return record.name == macro ||
+                       std::any_of(record.members.begin(), record.members.end(),
+                                   [&](const auto& member) { return member.name == macro; });
+            });
+    };
+    std::string hint;
+    for (const std::string& macro : detail::defined_macros(options))
+        if (names_member(macro))
+            hint += "\nhint: the build options define the macro '" + macro +
+                    "', which is the name of a struct or member";
+        else if (in_log)
+            hint += "\nhint: the build options define the macro '" + macro + "'";
+    return hint;
+}
+
+cl::Program build(detail::DeviceState& device, const Source& source,
+                  const detail::Definitions& definitions, cl_uint modes) {
+    if (source.text.empty()) throw Error("the source of " + source.file_name + " is empty");
+    if (definitions.needs_fp64 && !device.info.fp64)
+        throw Error("a struct has members of type double, which " + device.info.name +
+                    " does not support");
+    const ProgramText whole = whole_source(source, definitions, modes, device.info);
+    try {
+        return device.program(whole.text(), "-cl-std=CL1.2 -cl-kernel-arg-info " + source.options);
+    } catch (const OpenClError& error) {
+        const std::string log = whole.in_parts(error.log());
+        const auto known = [&](const std::string& name) {
+            return std::any_of(definitions.records.begin(), definitions.records.end(),
+                               [&](const auto& record) { return record.name == name; });
+        };
+        const std::string complaint = complaint_about_structs(whole, log, device.info);
+        throw OpenClError(error.call(), error.code(),
+                          (complaint.empty() ? detail::with_hints(log, known) : complaint + log) +
+                              macro_hint(source.options, definitions, log));
+    }
+}
+
+cl::NDRange nd_range(const std::array<std::size_t, 3>& extents, std::size_t dimensions) {
+    if (dimensions == 1) return {extents[0]};
+    if (dimensions == 2) return {extents[0], extents[1]};
+    return {extents[0], extents[1], extents[2]};
+}
+
+/// The work-group of a launch: the range's own, else the one that the kernel requires, else one of
+/// up to 256 items that divides the range; the driver's choice where none of a useful size does.
+cl::NDRange work_group(const Range& range, const std::array<std::size_t, 3>& required,
+                       std::size_t limit) {
+    const auto end = range.local.begin() + static_cast<std::ptrdiff_t>(range.dimensions);
+    const auto zeros = std::count(range.local.begin(), end, 0u);
+    if (zeros == 0) return nd_range(range.local, range.dimensions);
+    if (zeros != end - range.local.begin())
+        throw Error("Range::local has an extent of 0: name all of them, or none");
+    if (required[0] != 0) return nd_range(required, range.dimensions);
+
+    constexpr std::size_t least = 32;
+    const std::size_t most = std::min<std::size_t>(limit, 256);
+    if (most < least) return cl::NullRange;
+    const std::size_t x = std::gcd(range.global[0], range.dimensions == 1 ? most : most / 8);
+    const std::size_t y = range.dimensions == 1 ? 1 : std::gcd(range.global[1], std::size_t{8});
+    return x * y < least ? cl::NullRange : nd_range({x, y, 1}, range.dimensions);
+}
+
+cl::Kernel kernel_called(const cl::Program& program, const std::string& name,
+                         const Source& source) {
+    try {
+        return {program, name.c_str()};
+    } catch (const cl::Error& error) {
+        if (error.err() != CL_INVALID_KERNEL_NAME) throw;
+        throw OpenClError(error.what(), error.err(),
+                          source.file_name + " has no kernel called '" + name + "'");
+    }
+}
+
+/// Parameters or arguments as they are written: a container is one of them and takes four.
+std::size_t written(const auto& list) {
+    const auto containers =
+        std::count_if(list.begin(), list.end(), [](const auto& item) { return item.is_container; });
+    return list.size() - 3 * static_cast<std::size_t>(containers);
+}
+
+/// The kernel, compiled for containers of some modes.
+struct Variant {
+    cl::Kernel kernel;
+    std::vector<Parameter> parameters;
+    std::size_t work_group_limit = 0;
+    std::size_t own_local_bytes = 0;                   ///< of local memory without parameters
+    std::array<std::size_t, 3> required_work_group{};  ///< 0 if the kernel requires none
+};
+
+/// Throws Error if the kernel takes more local memory than there is.
+void check_local_memory(const detail::DeviceState& device, const std::string& name,
+                        const Variant& variant, std::span<const Arguments::Argument> list) {
+    std::uint64_t bytes = variant.own_local_bytes;
+    for (const Arguments::Argument& argument : list)
+        if (argument.kind == Arguments::Kind::local) bytes += argument.size;
+    if (bytes > device.info.local_memory_bytes)
+        throw Error("kernel " + name + " takes " + std::to_string(bytes) +
+                    " bytes of local memory together, " + device.info.name + " has " +
+                    std::to_string(device.info.local_memory_bytes));
+}
+
+}  // namespace
+
+struct Kernel::Impl {
+    std::shared_ptr<detail::DeviceState> device;
+    Source source;
+    std::string name;
+    detail::Definitions definitions;
+    std::map<cl_uint, Variant> variants;  ///< by modes
+
+    /// Checks all arguments, then sets them.
+    void set(Variant& variant, const Arguments& arguments) const {
+        const auto list = arguments.list();
+        if (list.size() != variant.parameters.size())
+            throw Error("kernel " + name + " takes " + std::to_string(written(variant.parameters)) +
+                        " arguments and was given " + std::to_string(written(list)) +
+                        " (a container counts as one; build(kernel, ...) passes it first)");
+        const detail::ArgumentCheck check(*device, definitions, name);
+        for (cl_uint i = 0; i < list.size(); ++i)
+            check(i, variant.parameters[i], list[i], arguments.data(list[i]));
+        check_local_memory(*device, name, variant, list);
+        opencl([&] {
+            for (cl_uint i = 0; i < list.size(); ++i)
+                variant.kernel.setArg(i, list[i].size, arguments.data(list[i]));
+        });
+    }
+
+    void launch(Variant& variant, const Range& range, cl::Event* event) const {
+        opencl([&] {
+            const cl::CommandQueue& queue = device->ordered_queue();
+            const auto& extents = range.global;
+            if (std::find(extents.begin(), extents.end(), 0u) != extents.end()) {
+                if (event != nullptr) queue.enqueueMarkerWithWaitList(nullptr, event);
+            } else {
+                queue.enqueueNDRangeKernel(
+                    variant.kernel, cl::NullRange, nd_range(range.global, range.dimensions),
+                    work_group(range, variant.required_work_group, variant.work_group_limit),
+                    nullptr, event);
+            }
+        });
+    }
+
+    /// The kernel for containers of these modes; builds it the first time.
+    Variant& variant(cl_uint modes) {
+        if (const auto known = variants.find(modes); known != variants.end()) return known->second;
+        const cl::Program program = build(*device, source, definitions, modes);
+        return opencl([&]() -> Variant& {
+            Variant made;
+            made.kernel = kernel_called(program, name, source);
+            made.parameters = parameters_of(made.kernel, definitions);
+            made.work_group_limit =
+                made.kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device->device);
+            made.own_local_bytes =
+                made.kernel.getWorkGroupInfo<CL_KERNEL_LOCAL_MEM_SIZE>(device->device);
+            made.required_work_group =
+                made.kernel.getWorkGroupInfo<CL_KERNEL_COMPILE_WORK_GROUP_SIZE>(device->device);
+            return variants.emplace(modes, std::move(made)).first->second;
+        });
+    }
+};
+
+Kernel::Kernel(std::shared_ptr<detail::DeviceState> device, const Source& source,
+               const std::string& name, const detail::Definitions& definitions)
+    : impl_("a Kernel",
+            std::unique_ptr<Impl>(new Impl{std::move(device), source, name, definitions, {}})) {
+    impl_->variant(definitions.modes);
+}
+
+Kernel::Kernel(Kernel&&) noexcept = default;
+Kernel& Kernel::operator=(Kernel&&) noexcept = default;
+Kernel::~Kernel() = default;
+
+const std::string& Kernel::name() const { return impl_->name; }
+
+void Kernel::enqueue(const Range& range, const Arguments& arguments, cl::Event* event) {
+    Variant& variant =
+        impl_->variant(arguments.modes() != 0 ? arguments.modes() : impl_->definitions.modes);
+    impl_->set(variant, arguments);
+    for (const Arguments::ClosedLists& closed : arguments.closed_lists())
+        detail::Build::give(closed.lists, variant.parameters[closed.index].name, impl_->name);
+
+    const detail::OtherQueues others(*impl_->device, arguments);
+    if (others.empty()) return impl_->launch(variant, range, event);
+    cl::Event done = others.run_between([&] {
+        cl::Event launched;
+        impl_->launch(variant, range, &launched);
+        return launched;
+    });
+    if (event != nullptr) *event = std::move(done);
+}
+
+}  // namespace cellist

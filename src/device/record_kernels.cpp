@@ -1,0 +1,21 @@
+#include "device/record_kernels.hpp"
+
+#include <utility>
+
+namespace cellist::detail {
+
+RecordKernels::RecordKernels(MemoryOwner device, Definitions definitions)
+    : device_(std::move(device)), definitions_(std::move(definitions)) {}
+
+Kernel& RecordKernels::get(std::initializer_list<KernelFile> files, const char* name, unsigned mode,
+                           const std::string& definitions) {
+    const std::tuple id(std::string(name), mode, definitions);
+    if (Kernel* known = kernels_.find(id)) return *known;
+    std::string text = "#define CELLIST_RECORD " + record().name + "\n" + definitions;
+    for (const KernelFile& file : files)
+        text += std::string("#line 1 \"") + file.name + "\"\n" + std::string(file.text);
+    definitions_.modes = mode;
+    return kernels_.add(id, Kernel(device_, Source{.text = std::move(text)}, name, definitions_));
+}
+
+}  // namespace cellist::detail

@@ -1,0 +1,240 @@
+#include "lists/build.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "device/device_state.hpp"
+#include "storage/container_storage.hpp"
+
+namespace cellist::detail {
+
+/// The build whose function this thread runs, and a link to the build around it.
+class Build::Running {
+public:
+    explicit Running(Build& now) : build(now), outer(std::exchange(innermost, this)) {}
+    ~Running() { innermost = outer; }
+    Running(const Running&) = delete;
+    Running& operator=(const Running&) = delete;
+
+    static thread_local Running* innermost;
+    Build& build;
+    Running* const outer;
+};
+
+thread_local Build::Running* Build::Running::innermost = nullptr;
+
+/// Keeps the containers alive until the caller returns: the function that inserts may replace them.
+std::vector<std::shared_ptr<ListsCore>> Build::held() const {
+    std::vector<std::shared_ptr<ListsCore>> held;
+    for (ListsCore* container : containers_) held.push_back(container->shared_from_this());
+    return held;
+}
+
+/// Throws Error if the containers cannot be built together, or not now.
+void Build::refuse_if_unfit() const {
+    const ListsCore& first = *containers_.front();
+    for (const ListsCore* container : containers_) {
+        container->refuse_build();
+        if (std::count(containers_.begin(), containers_.end(), container) > 1)
+            throw Error("a build names the same container twice");
+        const bool same_device = container->device()->device() == first.device()->device();
+        if (!same_device || container->device()->context() != first.device()->context())
+            throw Error("one build cannot fill the " + first.description() + " on " +
+                        first.device()->info.name + " and the " + container->description() +
+                        " on " + container->device()->info.name + ": they belong to different " +
+                        (same_device ? "contexts" : "devices") + ", so build each of them alone");
+    }
+}
+
+/// The only place where a build and its containers change from phase to phase, but for failures.
+void Build::enter(Phase phase) {
+    phase_ = phase;
+    for (ListsCore* container : containers_)
+        container->enter(
+            {.phase = phase, .build = phase == Phase::pending ? shared_from_this() : nullptr});
+}
+
+/// Ends the build with the exception under way, or the one given before; all containers are empty
+/// then.
+void Build::fail() noexcept {
+    bool without_pool = false;
+    if (!error_) {
+        error_ = std::current_exception();
+        try {
+            throw;
+        } catch (const OpenClError& error) {
+            // A driver may find out only now that it has no memory for a pool it had granted.
+            without_pool = out_of_memory(error);
+        } catch (...) {}
+    }
+    phase_ = Phase::failed;
+    for (ListsCore* container : containers_) container->fail(without_pool);
+}
+
+std::shared_ptr<Build> Build::start(std::vector<ListsCore*> containers,
+                                    std::function<void()> insert) {
+    const std::shared_ptr<Build> build(new Build(std::move(containers), std::move(insert)));
+    build->refuse_if_unfit();
+    const auto held = build->held();
+    for (ListsCore* container : build->containers_) {
+        take_counts(*container);
+        container->make_ready();
+    }
+    build->reports_.resize(build->containers_.size());
+    build->enter(Phase::building);
+    try {
+        for (ListsCore* container : build->containers_) container->storage().start();
+        build->enqueue_passes();
+    } catch (...) {
+        build->fail();
+        throw;
+    }
+    build->enter(Phase::pending);
+    return build;
+}
+
+/// The containers may have queues of their own, of one context.
+cl::Event Build::marker() {
+    if (error_) std::rethrow_exception(error_);
+    try {
+        const DeviceState& first = *containers_.front()->device();
+        std::vector<cl::Event> others;
+        for (const ListsCore* container : containers_) {
+            const DeviceState& device = *container->device();
+            if (device.queue() == first.queue()) continue;
+            others.push_back(device.marker());
+            opencl([&] { device.queue.flush(); });
+        }
+        if (others.empty()) return first.marker();
+        others.push_back(first.marker());
+        return opencl([&] {
+            cl::Event event;
+            first.queue.enqueueMarkerWithWaitList(&others, &event);
+            return event;
+        });
+    } catch (...) {
+        fail();
+        throw;
+    }
+}
+
+/// Enqueues a pass, and more of them where a container needs no look at the counters in between.
+void Build::enqueue_passes() {
+    bool another = true;
+    while (another) {
+        ++passes_;
+        for (ListsCore* container : containers_) container->storage().get().begin_pass();
+        {
+            const Running running(*this);
+            insert_();
+        }
+        another = false;
+        for (ListsCore* container : containers_)
+            if (container->storage().get().end_pass()) another = true;
+    }
+    for (const auto& bystander : bystanders_) count_refused(*bystander);
+}
+
+void Build::give(const std::weak_ptr<const ListsCore>& lists, const std::string& parameter,
+                 const std::string& kernel) {
+    if (Running::innermost == nullptr) return;
+    const std::shared_ptr<const ListsCore> given = lists.lock();
+    if (!given) return;
+    auto& all = Running::innermost->build.bystanders_;
+    auto known = std::find_if(all.begin(), all.end(), [&](const auto& bystander) {
+        return !bystander->counted && bystander->lists.lock() == given;
+    });
+    if (known == all.end()) {
+        auto made = std::make_unique<Bystander>();
+        made->first_pass = Running::innermost->build.passes_;
+        made->lists = lists;
+        made->description = given->description();
+        made->fence = given->read_late(made->before);
+        known = all.insert(all.end(), std::move(made));
+    }
+    const std::string name = parameter.substr(0, parameter.rfind("_nodes"));
+    const std::string use = "parameter '" + name + "' of kernel " + kernel;
+    auto& uses = (*known)->uses;
+    if (std::find(uses.begin(), uses.end(), use) == uses.end()) uses.push_back(use);
+}
+
+void Build::take_counts(const ListsCore& lists) {
+    for (const Running* running = Running::innermost; running != nullptr; running = running->outer)
+        for (const auto& bystander : running->build.bystanders_)
+            if (bystander->lists.lock().get() == &lists) count_refused(*bystander);
+}
+
+/// Enqueues the reading of the number of inserts that the lists have refused, if the lists still
+/// exist.
+void Build::count_refused(Bystander& bystander) {
+    if (std::exchange(bystander.counted, true)) return;
+    if (const auto lists = bystander.lists.lock())
+        bystander.fence = lists->read_late(bystander.after);
+    else
+        bystander.lists.reset();
+}
+
+/// Throws Error if lists that are not part of the build have refused inserts of its kernels.
+/// Blocks.
+void Build::check_bystanders() {
+    for (const auto& bystander : std::exchange(bystanders_, {})) {
+        bystander->fence.wait();
+        const auto [low, high] = bystander->after;
+        const std::uint64_t before = wide(bystander->before[0], bystander->before[1]);
+        const std::uint64_t after = wide(low, high);
+        if (after <= before) continue;
+        const std::uint32_t passes = passes_ - bystander->first_pass + 1;
+        std::string uses;
+        for (const std::string& use : bystander->uses) uses += (uses.empty() ? "" : ", ") + use;
+        throw Error("the " + bystander->description + " (" + uses + ") refused " +
+                    std::to_string(after - before) + " inserts" +
+                    (passes > 1 ? " in " + std::to_string(passes) + " passes" : std::string()) +
+                    ", because they are no part of the build: name all containers that the "
+                    "kernels fill, as in cellist::build(function, lists, other_lists)");
+    }
+}
+
+/// Whether all containers are complete; the first blocks.
+bool Build::review() {
+    check_bystanders();
+    bool complete = true;
+    for (std::size_t i = 0; i < containers_.size(); ++i) {
+        reports_[i].passes = passes_;
+        if (!containers_[i]->storage().review(reports_[i])) complete = false;
+    }
+    return complete;
+}
+
+const std::vector<BuildReport>& Build::finish() {
+    if (phase_ == Phase::building)
+        throw Error("a build is finished by the function that inserts for it");
+    if (phase_ == Phase::pending) {
+        const auto self = shared_from_this();
+        const auto held = this->held();
+        enter(Phase::building);
+        try {
+            while (!review()) enqueue_passes();
+        } catch (...) {
+            fail();
+            throw;
+        }
+        enter(Phase::ready);
+    }
+    if (error_) std::rethrow_exception(error_);
+    return reports_;
+}
+
+void Build::abandon() noexcept {
+    if (phase_ != Phase::pending) return;
+    const auto self = shared_from_this();
+    error_ = std::make_exception_ptr(Error("the lists went before their build was finished"));
+    fail();
+}
+
+bool Build::may_change() const {
+    return std::any_of(containers_.begin(), containers_.end(), [](const ListsCore* container) {
+        return container->storage().review_may_change();
+    });
+}
+
+}  // namespace cellist::detail

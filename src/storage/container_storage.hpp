@@ -1,0 +1,62 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <cellist/options.hpp>
+#include <cellist/report.hpp>
+
+#include "device/record_kernels.hpp"
+#include "storage/storage.hpp"
+
+namespace cellist::detail {
+
+struct Measurement;
+
+/// The storage of a container: here the one that the options name. AutomaticStorage changes it from
+/// build to build.
+class ContainerStorage {
+public:
+    ContainerStorage(RecordKernels& kernels, std::unique_ptr<ListStorage> storage)
+        : kernels_(kernels), storage_(std::move(storage)) {}
+    virtual ~ContainerStorage() = default;
+    ContainerStorage(const ContainerStorage&) = delete;
+    ContainerStorage& operator=(const ContainerStorage&) = delete;
+
+    /// The storage in use.
+    [[nodiscard]] ListStorage& get() const { return *storage_; }
+    /// Puts another storage in the place of the one in use, and returns that.
+    [[nodiscard]] std::unique_ptr<ListStorage> exchange(std::unique_ptr<ListStorage> other) {
+        return std::exchange(storage_, std::move(other));
+    }
+
+    /// A build of this container alone that blocks; `run` does all of it.
+    virtual BuildReport build(const std::function<BuildReport()>& run) { return run(); }
+    /// Starts a build in the storage in use.
+    virtual void start() { storage_->start(); }
+    /// As ListStorage::review(), for a build that start() began.
+    virtual bool review(BuildReport& report) { return storage_->review(report); }
+    /// Whether review() can change the lists.
+    [[nodiscard]] virtual bool review_may_change() const { return storage_->may_grow(); }
+    /// From now on until end_slices(), the storage stays the same.
+    virtual void begin_slices() {}
+    virtual void end_slices() { storage_->set_slice({0, storage_->cells()}); }
+    /// A sentence for people: why this storage is in use.
+    [[nodiscard]] virtual std::string reason() const;
+
+    /// Takes the time of a build that `run` does, and the time of a read of every record. Blocks.
+    BuildReport measure(const std::function<BuildReport()>& run, Measurement& measurement);
+
+protected:
+    RecordKernels& kernels_;
+    std::unique_ptr<ListStorage> storage_;
+};
+
+/// What the options name, with empty lists. Throws Error if a size exceeds a limit.
+[[nodiscard]] std::unique_ptr<ContainerStorage> make_container_storage(RecordKernels& kernels,
+                                                                       const Shape& shape,
+                                                                       const ListsOptions& options);
+
+}  // namespace cellist::detail

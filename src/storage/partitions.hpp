@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include <cellist/detail/memory.hpp>
+
+#include "device/device_state.hpp"
+#include "storage/view.hpp"
+
+namespace cellist::detail {
+
+/// Memory where the threads of a processor leave records in a single pass, in blocks of their own
+/// for the partition of each record's cell. See mode PARTITIONED in view.h.
+class Partitions {
+public:
+    struct Plan {
+        std::uint64_t records = 0;  ///< that fit from a thread a compute unit
+        std::uint64_t nodes = 0;    ///< of whole blocks
+        std::size_t node_bytes = 0;
+        cl_uint thread_slots = 0;  ///< of threads
+        cl_uint bits = 0;          ///< 2^bits cells are a partition
+        cl_uint partitions = 0;
+
+        /// Words of the heads that are 0 before a pass.
+        [[nodiscard]] std::uint64_t words_to_clear() const;
+        [[nodiscard]] std::uint64_t head_words() const;
+        [[nodiscard]] std::uint64_t bytes() const;
+    };
+    /// For an eighth more records than these. None where a device has no such threads, or its
+    /// limits or so few records forbid it.
+    [[nodiscard]] static std::optional<Plan> plan(const DeviceInfo& device, std::size_t node_bytes,
+                                                  std::uint64_t cells, std::uint64_t records);
+
+    /// Null where the device has no memory for it.
+    [[nodiscard]] static std::unique_ptr<Partitions> make(const MemoryOwner& device,
+                                                          const Plan& plan);
+
+    [[nodiscard]] const Plan& plan() const { return plan_; }
+    [[nodiscard]] const Memory& nodes() const { return nodes_; }
+    [[nodiscard]] const Memory& heads() const { return heads_; }
+    /// The number of records, then where the lists of each partition start.
+    [[nodiscard]] const Memory& starts() const { return starts_; }
+
+private:
+    Partitions(const MemoryOwner& device, const Plan& plan);
+
+    Plan plan_;
+    Memory nodes_;
+    Memory heads_;
+    Memory starts_;
+};
+
+}  // namespace cellist::detail

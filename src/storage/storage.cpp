@@ -1,0 +1,111 @@
+#include "storage/storage.hpp"
+
+#include <iterator>
+
+#include "storage/storages.hpp"
+
+namespace cellist::detail {
+
+ListStorage::ListStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options,
+                         cl_uint mode, const NodePool::Layout& layout)
+    : kernels_(kernels),
+      shape_(shape),
+      options_(options),
+      pool_(kernels.device(), shape, options, layout),
+      view_{},
+      slice_{0, shape.cells()} {
+    for (std::size_t i = 0; i < std::size(view_.extent); ++i)
+        view_.extent[i] = static_cast<cl_uint>(shape.extent(i));
+    view_.cells = static_cast<cl_uint>(shape.cells());
+    view_.mode = mode;
+}
+
+void ListStorage::allocate_first(std::uint64_t capacity_nodes) {
+    if (const auto reason = pool_.refusal(capacity_nodes)) throw MemoryError(*reason);
+    pool_.allocate(capacity_nodes);
+}
+
+cellist_view ListStorage::view(Inserts inserts) const {
+    cellist_view view = view_;
+    view.first_cell = static_cast<cl_uint>(slice_.first_cell);
+    view.open_cells = inserts == Inserts::accepted ? static_cast<cl_uint>(slice_.cells) : 0;
+    pool_.describe(view);
+    return view;
+}
+
+void ListStorage::add_to(Arguments& arguments, Inserts inserts) const {
+    add_to(arguments, pool_.nodes(), pool_.heads(), view(inserts));
+}
+
+void ListStorage::add_to(Arguments& arguments, const Memory& nodes, const Memory& heads,
+                         const cellist_view& view) const {
+    arguments.add_nodes(nodes, record().name);
+    arguments.add(heads);
+    arguments.add(pool_.shards());
+    arguments.append(Arguments::Kind::value, &view, sizeof view);
+    arguments.add_mode(view.mode);
+}
+
+void ListStorage::start() {
+    pool_.start_build();
+    expect_nothing();
+}
+
+Counters::Sum ListStorage::wait_for_counters() {
+    reading_.wait();
+    return counters_.sum();
+}
+
+void ListStorage::release_pool() noexcept {
+    settle();
+    pool_.release();
+}
+
+void ListStorage::recover(bool without_pool) {
+    settle();
+    make_whole(pool_.recover(without_pool));
+    clear();
+}
+
+void ListStorage::update(BuildReport& report, const Counters::Sum& counters, std::uint64_t stored) {
+    expected_->stored = stored;
+    report.stored = stored;
+    report.dropped = counters.dropped;
+    report.rejected = counters.rejected;
+    report.attempted = stored + counters.dropped + counters.rejected;
+    report.capacity_nodes = pool_.capacity_nodes();
+}
+
+PendingRead ListStorage::find(Findings& findings, Kernel& kernel,
+                              const Arguments& arguments) const {
+    constexpr cl_uint zero = 0;
+    findings.memory.fill(&zero, sizeof zero, sizeof findings.found);
+    Arguments all = arguments;
+    all.add(findings.memory.cl());
+    kernel.enqueue(Range::padded(shape_.cells()), all);
+    return findings.memory.read_later(&findings.found, sizeof findings.found);
+}
+
+std::unique_ptr<ListStorage> make_storage(RecordKernels& kernels, const Shape& shape,
+                                          const ListsOptions& options) {
+    if (options.storage.nearest_key())
+        return std::make_unique<NearestStorage>(kernels, shape, options);
+    const bool fixed = options.storage == Storage::fixed;
+    if (options.overflow != Overflow::grow &&
+        !(fixed ? options.slots.has_value() : options.capacity_nodes.has_value()))
+        throw Error(std::string("an Overflow other than grow needs ") +
+                    (fixed ? "slots in Storage::fixed" : "capacity_nodes"));
+    switch (options.storage) {
+        case Storage::linked:
+            return std::make_unique<LinkedStorage>(kernels, shape, options);
+        case Storage::counted:
+            return std::make_unique<CountedStorage>(kernels, shape, options);
+        case Storage::fixed:
+            return std::make_unique<FixedStorage>(kernels, shape, options);
+        case Storage::automatic:
+            break;
+    }
+    throw Error("unknown storage");
+}
+
+}  // namespace cellist::detail

@@ -1,0 +1,172 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include <cellist/detail/memory.hpp>
+#include <cellist/detail/readback.hpp>
+#include <cellist/kernel.hpp>
+#include <cellist/options.hpp>
+#include <cellist/report.hpp>
+#include <cellist/shape.hpp>
+
+#include "device/record_kernels.hpp"
+#include "storage/node_pool.hpp"
+#include "storage/view.hpp"
+
+namespace cellist::detail {
+
+/// The kernel did not insert the same records again where that is needed.
+class UnrepeatableError : public Error {
+public:
+    using Error::Error;
+};
+
+/// Whether a kernel may insert into a container.
+enum class Inserts { refused, accepted };
+
+/// How a container keeps its nodes: a pool, and the passes of a build. One class a storage.
+///
+/// A new storage adds a class of its own and a file in kernels/cellist/, and a row in each of five
+/// places: Storage (options.hpp), make_storage (storage.cpp), the modes (view.h), the library's text
+/// (kernel.cpp), and CELLIST_CALL_STORAGE with CELLIST_DEFINE_RECORD (lists.clh).
+class ListStorage {
+public:
+    virtual ~ListStorage() = default;
+    ListStorage(const ListStorage&) = delete;
+    ListStorage& operator=(const ListStorage&) = delete;
+
+    /// Empties the lists. Does not block.
+    virtual void clear() = 0;
+
+    /// A build is start(), then passes until review() says that the lists are complete; see
+    /// build.cpp. More passes may follow, where another container needs them: they fill the lists
+    /// anew.
+    virtual void start();
+    /// Enqueues what the next run of the kernels needs. Does not block.
+    virtual void begin_pass() { clear(); }
+    /// Enqueues what follows a run of the kernels, the reading of its counters above all. True if
+    /// another pass must follow that needs no review of this one. Does not block.
+    virtual bool end_pass() = 0;
+    /// Takes the counters of the last pass into the report, and grows, stops or drops by the
+    /// options. True if the lists are complete. Throws OverflowError; the caller empties the lists
+    /// then. Blocks.
+    virtual bool review(BuildReport& report) = 0;
+    /// Whether a review can change the lists.
+    [[nodiscard]] bool may_grow() const { return options_.overflow != Overflow::drop; }
+
+    /// Blocks until nothing is on its way to this object's memory. Comes before the destructor.
+    void settle() noexcept { reading_.settle(); }
+    /// Gives the nodes' memory back, before another storage takes this one's place. What is left
+    /// can only be destroyed, or be recovered. Blocks as settle() does.
+    virtual void release_pool() noexcept;
+    /// Makes what a failed build may have left undone, with empty lists. A pool that grows is empty
+    /// afterwards if there was none, or if `without_pool` says so.
+    void recover(bool without_pool);
+
+    /// Enqueues a check for links, offsets and counts that are inconsistent, or differ from those
+    /// of the last build. Does not block. Call the result once, when that build is finished; that
+    /// call blocks.
+    [[nodiscard]] virtual std::function<Validation()> validate() = 0;
+
+    /// From now on, these cells alone have lists. The lists must be empty.
+    virtual void set_slice(const Slice& slice) { slice_ = slice; }
+    /// Nodes that lists need in so many cells, the longest of them as long, `total` together.
+    [[nodiscard]] virtual std::uint64_t nodes_for(std::uint64_t total, std::uint64_t longest,
+                                                  std::uint64_t cells) const = 0;
+    /// The most nodes that the policy lets the pool have.
+    [[nodiscard]] std::uint64_t most_nodes() const { return pool_.most_nodes(); }
+    /// Makes room for such lists in the slice, if the policy is to grow. Throws OverflowError.
+    virtual void reserve(std::uint64_t total, std::uint64_t longest) = 0;
+
+    /// Enqueues the reading of the inserts since the last clear() that were refused for there was
+    /// no build: low and high word.
+    [[nodiscard]] PendingRead read_late(std::array<cl_uint, 2>& words) const {
+        return pool_.read_late(words);
+    }
+
+    /// Adds what CELLIST_LISTS declares.
+    virtual void add_to(Arguments& arguments, Inserts inserts = Inserts::refused) const;
+
+    [[nodiscard]] const NodePool& pool() const { return pool_; }
+    [[nodiscard]] NodePool& pool() { return pool_; }
+    /// Records that surely fit.
+    [[nodiscard]] std::uint64_t capacity_nodes() const { return pool_.capacity_nodes(); }
+    /// Device memory of all buffers that the storage keeps.
+    [[nodiscard]] std::uint64_t bytes() const { return pool_.bytes(); }
+    [[nodiscard]] std::uint64_t cells() const { return shape_.cells(); }
+    [[nodiscard]] Storage kind() const { return options_.storage; }
+    /// The mode in which the lists are read.
+    [[nodiscard]] cl_uint mode() const { return view_.mode; }
+    /// Records in the lists.
+    [[nodiscard]] std::uint64_t stored() const { return expected_->stored; }
+
+protected:
+    ListStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options,
+                cl_uint mode, const NodePool::Layout& layout);
+
+    /// What recover() calls; `without_nodes` if the pool shall have none.
+    virtual void make_whole(bool without_nodes) = 0;
+
+    /// What kernels see of the container.
+    [[nodiscard]] cellist_view view(Inserts inserts) const;
+    void add_to(Arguments& arguments, const Memory& nodes, const Memory& heads,
+                const cellist_view& view) const;
+    [[nodiscard]] const RecordType& record() const { return kernels_.record(); }
+    /// Makes a pool of this capacity. Throws MemoryError if a limit forbids it.
+    void allocate_first(std::uint64_t capacity_nodes);
+    /// Waits for the counters of the last pass.
+    [[nodiscard]] Counters::Sum wait_for_counters();
+    /// Sets words of the heads, and clears all counters. Does not block.
+    void clear_words(cl_uint head, std::uint64_t first_word, std::uint64_t words) {
+        pool_.clear(pool_.heads(), head, first_word, words);
+    }
+    /// A report of the counters.
+    void update(BuildReport& report, const Counters::Sum& counters, std::uint64_t stored);
+
+    /// The state after a build, for a validation to compare with.
+    struct Expected {
+        std::uint64_t stored = 0;
+        std::uint64_t counts_hash = 0;
+    };
+    /// Nothing is in the lists any more, and a build may follow.
+    void expect_nothing() { expected_ = std::make_shared<Expected>(); }
+
+    /// What a validating kernel finds, on its way to the host.
+    struct Findings {
+        Memory memory;
+        cellist_findings found{};
+    };
+    [[nodiscard]] Memory memory_for_findings() const {
+        return {pool_.device().state(), 1, sizeof(cellist_findings), "findings"};
+    }
+    /// Enqueues a validating kernel over all cells: (container, arguments..., findings). What it
+    /// found is there when the reading has arrived.
+    [[nodiscard]] PendingRead find(Findings& findings, Kernel& kernel,
+                                   const Arguments& arguments) const;
+
+    RecordKernels& kernels_;
+    Shape shape_;
+    ListsOptions options_;
+    NodePool pool_;
+    /// The mode, and what a storage knows of its slots and keys. view() adds the rest.
+    cellist_view view_;
+    Slice slice_;
+    std::shared_ptr<Expected> expected_ = std::make_shared<Expected>();  ///< of the last build
+    Counters counters_;                                                  ///< of the last pass
+    ReadbackFence reading_;  ///< what a review waits for: the last reading of the pass
+};
+
+/// The lowest bad cell, if there is one.
+[[nodiscard]] inline std::optional<std::uint64_t> bad_cell(const cellist_findings& findings) {
+    if (findings.bad_cell_from_end == 0) return {};
+    return CELLIST_NONE - findings.bad_cell_from_end;
+}
+
+/// The storage that the options name, with empty lists. Throws Error if a size exceeds a limit.
+[[nodiscard]] std::unique_ptr<ListStorage> make_storage(RecordKernels& kernels, const Shape& shape,
+                                                        const ListsOptions& options);
+
+}  // namespace cellist::detail

@@ -1,0 +1,271 @@
+#include <algorithm>
+
+#include "cellist_kernels.hpp"
+#include "storage/storages.hpp"
+
+namespace cellist::detail {
+
+CountedStorage::CountedStorage(RecordKernels& kernels, const Shape& shape,
+                               const ListsOptions& options)
+    : ListStorage(
+          kernels, shape, options, CELLIST_CONTIGUOUS,
+          {.node_bytes = kernels.record().size, .head_words_a_cell = 2, .more_head_words = 1}),
+      scan_(pool_.device(), shape.cells(), counts_at()) {
+    allocate_first(options.capacity_nodes.value_or(0));
+    clear();
+}
+
+void CountedStorage::clear() {
+    clear_words(0, 0, counts_at() + shape_.cells());
+    expect_nothing();
+}
+
+void CountedStorage::add_to(Arguments& arguments, Inserts inserts) const {
+    if (view_.mode != CELLIST_PARTITIONED) return ListStorage::add_to(arguments, inserts);
+    const Partitions::Plan& plan = partitions_->plan();
+    cellist_view partitioned = view(inserts);
+    partitioned.capacity_nodes = static_cast<cl_uint>(plan.nodes);
+    // Blocks from one counter: those that are being filled lie close together.
+    partitioned.shard_bits = 0;
+    partitioned.thread_slots = plan.thread_slots;
+    partitioned.partition_bits = plan.bits;
+    ListStorage::add_to(arguments, partitions_->nodes(), partitions_->heads(), partitioned);
+}
+
+void CountedStorage::release_pool() noexcept {
+    ListStorage::release_pool();
+    set_partitions(nullptr);
+}
+
+/// These go when the pool grows: another capacity takes other partitions.
+void CountedStorage::set_partitions(std::unique_ptr<Partitions> partitions) {
+    partitions_ = std::move(partitions);
+    pool_.set_replaceable_bytes(partitions_ ? partitions_->plan().bytes() : 0);
+}
+
+void CountedStorage::start() {
+    ListStorage::start();
+    counted_ = false;
+    if (partitions_ && partitions_->plan().records >= capacity_nodes()) return;
+    set_partitions(nullptr);
+    set_partitions(partitions_for_pool());
+}
+
+/// Partitions for the records that the pool has room for. Null where builds have to count.
+std::unique_ptr<Partitions> CountedStorage::partitions_for_pool() const {
+    if (options_.overflow != Overflow::grow || slice_.cells != shape_.cells() ||
+        capacity_nodes() <= no_place_up_to_)
+        return nullptr;
+    const auto plan = Partitions::plan(pool_.device()->info, node_layout(record()).size,
+                                       shape_.cells(), capacity_nodes());
+    if (!plan || !pool_.has_room_for(plan->bytes())) return nullptr;
+    return Partitions::make(pool_.device(), *plan);
+}
+
+void CountedStorage::begin_pass() {
+    if (partitions_) {
+        pool_.clear(partitions_->heads(), 0, 0, partitions_->plan().words_to_clear());
+        view_.mode = CELLIST_PARTITIONED;
+    } else if (!counted_) {
+        clear();
+        view_.mode = CELLIST_COUNTING;
+    } else {
+        clear_words(0, counts_at(), shape_.cells());
+    }
+}
+
+bool CountedStorage::end_pass() {
+    view_.mode = CELLIST_CONTIGUOUS;
+    if (partitions_) {
+        move_from_partitions();
+        reading_ = partitions_->starts().read_later(&partitioned_, sizeof partitioned_);
+        reading_ = pool_.read(counters_);
+        return false;
+    }
+    if (counted_) {
+        // Nothing has changed the offsets yet, so they are compared with themselves.
+        reading_ = find(filled_, pool_.heads());
+        reading_ = pool_.read(counters_);
+        return false;
+    }
+    scan_.sum(pool_.heads().cl(), CELLIST_NONE);
+    reading_ = scan_.read_later(demand_);
+    reading_ = pool_.read(counting_);
+    if (options_.overflow != Overflow::drop) return false;
+    // The pool is what it is: no need to look at the counts first.
+    scan_.write_offsets(pool_.heads().cl(), pool_.heads().cl(), capacity_nodes());
+    counted_ = true;
+    return true;
+}
+
+/// Enqueues what turns partitions into lists, if the pool has room for them.
+void CountedStorage::move_from_partitions() {
+    const Partitions::Plan& plan = partitions_->plan();
+    const KernelFile file{"partitions.cl", kernels::partitions_cl};
+    kernels_.get({file}, "cellist_partition_starts", view_.mode)
+        .run(1, partitions_->heads().cl(), plan.thread_slots, plan.partitions,
+             partitions_->starts().cl());
+    Arguments arguments;
+    ListStorage::add_to(arguments);
+    arguments.add_nodes(partitions_->nodes(), record().name);
+    arguments.add(partitions_->heads().cl());
+    arguments.add(plan.thread_slots);
+    arguments.add(plan.bits);
+    arguments.add(partitions_->starts().cl());
+    kernels_.get({file}, "cellist_move_partition", view_.mode)
+        .enqueue(Range(plan.partitions), arguments);
+}
+
+bool CountedStorage::review_partitions(BuildReport& report) {
+    const Partitions::Plan plan = partitions_->plan();  // these may go
+    const Counters::Sum inserted = counters_.sum();
+    const std::uint64_t demand = partitioned_ + inserted.dropped;
+    const std::uint64_t kept = std::min<std::uint64_t>(partitioned_, capacity_nodes());
+    update(report, inserted, kept);
+    report.dropped = demand - kept;
+    report.attempted = demand + inserted.rejected;
+    if (report.dropped == 0) return true;
+
+    if (inserted.dropped == 0 && pool_.allows(pool_.bytes_with(demand) + plan.bytes())) {
+        // All are in the partitions, and the pool is too small for them.
+        pool_.require(demand, report);
+        pool_.grow(demand, report);
+        clear_words(0, 0, 0);
+        move_from_partitions();
+        update(report, inserted, demand);
+        return true;
+    }
+    set_partitions(nullptr);
+    if (inserted.dropped > 0 && demand <= plan.records) {
+        // A thread has found no place: this build counts.
+        no_place_up_to_ = plan.records;
+        return false;
+    }
+    pool_.require(demand, report);
+    pool_.grow(demand, report);
+    set_partitions(partitions_for_pool());
+    return false;
+}
+
+bool CountedStorage::review(BuildReport& report) {
+    reading_.wait();
+    if (partitions_) return review_partitions(report);
+    const Counters::Sum counting = counting_.sum();
+    const std::uint64_t demand = demand_.sum + counting.dropped;
+    const std::uint64_t kept = std::min<std::uint64_t>(demand_.sum, capacity_nodes());
+    if (!counted_) {
+        update(report, counting, kept);
+        report.dropped = demand - kept;
+        report.attempted = demand + counting.rejected;
+        make_room(report);
+        counted_ = true;
+        return false;
+    }
+    const Counters::Sum filled = counters_.sum();
+    update(report, filled, kept);
+    const std::uint64_t unfilled = filled_.found.unfilled;
+    if (unfilled > 0 || filled.dropped != demand - kept || filled.rejected != counting.rejected)
+        throw UnrepeatableError(
+            "the kernel inserted " +
+            std::to_string(kept - unfilled + filled.dropped + filled.rejected) +
+            " records when it filled the lists, and " + std::to_string(demand + counting.rejected) +
+            " or others when it counted them: it must insert the same records every time, "
+            "or use Storage::linked");
+    return true;
+}
+
+/// After the counting pass: room for all records, and the places of their lists.
+void CountedStorage::make_room(const BuildReport& report) {
+    if (report.dropped > 0) {
+        const std::uint64_t demand = report.stored + report.dropped;
+        pool_.require(demand, report);
+        if (demand > demand_.sum)
+            throw OverflowError("a list of more than " + std::to_string(CELLIST_CELL_COUNT_MAX) +
+                                    " records is over the limit of Storage::counted",
+                                report);
+        pool_.grow(demand, report);
+    }
+    scan_.write_offsets(pool_.heads().cl(), pool_.heads().cl(), capacity_nodes());
+}
+
+void CountedStorage::make_whole(bool without_nodes) {
+    counted_ = false;
+    set_partitions(nullptr);
+    view_.mode = CELLIST_CONTIGUOUS;
+    if (without_nodes) pool_.allocate(0);
+}
+
+std::uint64_t CountedStorage::nodes_for(std::uint64_t total, std::uint64_t, std::uint64_t) const {
+    return total;
+}
+
+void CountedStorage::reserve(std::uint64_t total, std::uint64_t) {
+    set_partitions(nullptr);
+    if (options_.overflow == Overflow::grow && capacity_nodes() < total)
+        pool_.allocate_for_slice(total, slice_.cells);
+}
+
+std::vector<cl_uint> CountedStorage::counts(BuildReport& report) {
+    reading_.wait();
+    const Counters::Sum counting = counting_.sum();
+    update(report, counting, 0);
+    report.dropped += demand_.sum;
+    report.attempted += demand_.sum;
+    std::vector<cl_uint> words(pool_.heads().size_bytes() / sizeof(cl_uint));
+    pool_.heads().read(words.data(), pool_.heads().size_bytes());
+    words.erase(words.begin(), words.begin() + counts_at());
+    return words;
+}
+
+/// Enqueues the comparison of the counts with the lists, and of the offsets with the expected
+/// offsets.
+PendingRead CountedStorage::find(Findings& findings, const Memory& offsets) {
+    Arguments arguments;
+    add_to(arguments, Inserts::refused);
+    arguments.add(offsets.cl());
+    return ListStorage::find(
+        findings,
+        kernels_.get({{"validate_contiguous.cl", kernels::validate_contiguous_cl}},
+                     "cellist_validate_contiguous", view_.mode),
+        arguments);
+}
+
+std::function<Validation()> CountedStorage::validate() {
+    struct Check {
+        Memory offsets;
+        Findings findings;
+        CellScan::Totals inserted;
+        Counters counters;
+        ReadbackFence done;
+    };
+    const auto check = std::make_shared<Check>();
+    check->findings.memory = memory_for_findings();
+    // Where the lists begin that have these counts.
+    check->offsets =
+        Memory(pool_.device().state(), shape_.cells() + 1, sizeof(cl_uint), "validation buffer");
+    scan_.sum(pool_.heads().cl(), CELLIST_NONE);
+    scan_.write_offsets(pool_.heads().cl(), check->offsets.cl(), capacity_nodes());
+    check->done = find(check->findings, check->offsets);
+    check->done = scan_.read_later(check->inserted);
+    check->done = pool_.read(check->counters);
+    return [check, expected_of_build = expected_] {
+        check->done.wait();
+        // Sound lists that do not add up to what was stored have a wrong end; counts that do not
+        // add up to what was stored and dropped are wrong.
+        const cellist_findings& found = check->findings.found;
+        const Counters::Sum counters = check->counters.sum();
+        const std::uint64_t kept = expected_of_build->stored;
+        const std::uint64_t lost = kept > found.nodes ? kept - found.nodes : found.nodes - kept;
+        const std::uint64_t counted = check->inserted.sum + found.unfilled;
+        const std::uint64_t expected = kept + counters.dropped;
+        // Counts end at their limit, where what was dropped goes on.
+        const bool wrong_counts = check->inserted.longest < CELLIST_CELL_COUNT_MAX
+                                      ? counted != expected
+                                      : counted > expected;
+        return Validation{found.broken == 0 && wrong_counts ? std::uint64_t{1} : found.broken, 0,
+                          found.unfilled + (found.broken == 0 ? lost : 0), counters.late,
+                          bad_cell(found)};
+    };
+}
+
+}  // namespace cellist::detail

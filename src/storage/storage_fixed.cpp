@@ -1,0 +1,118 @@
+#include <algorithm>
+
+#include "cellist_kernels.hpp"
+#include "storage/storages.hpp"
+
+namespace cellist::detail {
+
+FixedStorage::FixedStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options)
+    : ListStorage(kernels, shape, options, CELLIST_FIXED,
+                  {.node_bytes = kernels.record().size, .head_words_a_cell = 1}),
+      scan_(pool_.device(), shape.cells(), 0) {
+    std::uint64_t slots = options.slots.value_or(4);
+    if (!options.slots && pool_.refusal(nodes_with(slots))) slots = 0;
+    allocate_first(nodes_with(slots));
+    view_.slots = static_cast<cl_uint>(slots);
+    clear();
+}
+
+/// Nodes of all cells of the slice together; more than any device has where the product exceeds 64
+/// bits.
+std::uint64_t FixedStorage::nodes_with(std::uint64_t slots) const {
+    if (slots > CELLIST_CAPACITY_NODES_MAX) return ~std::uint64_t{0} / pool_.node_bytes();
+    return slots * slice_.cells;
+}
+
+void FixedStorage::set_slots(std::uint64_t slots) {
+    view_.slots = 0;
+    pool_.allocate(nodes_with(slots));
+    view_.slots = static_cast<cl_uint>(slots);
+}
+
+void FixedStorage::clear() {
+    clear_words(0, 0, shape_.cells());
+    expect_nothing();
+}
+
+bool FixedStorage::end_pass() {
+    scan_.sum(pool_.heads().cl(), view_.slots);
+    reading_ = scan_.read_later(in_slots_);
+    reading_ = pool_.read(counters_);
+    return false;
+}
+
+bool FixedStorage::review(BuildReport& report) {
+    const Counters::Sum counters = wait_for_counters();
+    update(report, counters, in_slots_.sum);
+    expected_->counts_hash = in_slots_.hash;
+    if (counters.dropped == 0 || options_.overflow == Overflow::drop) return true;
+
+    const std::uint64_t longest = in_slots_.longest;
+    if (options_.overflow == Overflow::stop)
+        throw OverflowError(
+            std::to_string(view_.slots) + " slots for each cell are too few for a list of " +
+                std::to_string(longest) + " records: raise slots or use Overflow::grow",
+            report);
+    if (const auto reason = pool_.refusal(nodes_with(longest)))
+        throw OverflowError("the longest list has " + std::to_string(longest) +
+                                " records, and so many slots for each of " +
+                                std::to_string(slice_.cells) +
+                                " cells are too many (use Storage::linked or counted): " + *reason,
+                            report);
+    view_.slots = 0;
+    pool_.grow(nodes_with(longest), report);
+    view_.slots = static_cast<cl_uint>(longest);
+    return false;
+}
+
+void FixedStorage::make_whole(bool without_nodes) {
+    if (without_nodes || capacity_nodes() < nodes_with(view_.slots)) set_slots(0);
+}
+
+void FixedStorage::set_slice(const Slice& slice) {
+    ListStorage::set_slice(slice);
+    if (capacity_nodes() < nodes_with(view_.slots)) view_.slots = 0;
+}
+
+std::uint64_t FixedStorage::nodes_for(std::uint64_t, std::uint64_t longest,
+                                      std::uint64_t cells) const {
+    return (options_.overflow == Overflow::grow ? longest : view_.slots) * cells;
+}
+
+void FixedStorage::reserve(std::uint64_t, std::uint64_t longest) {
+    if (options_.overflow != Overflow::grow || view_.slots >= longest) return;
+    view_.slots = 0;
+    pool_.allocate_for_slice(nodes_with(longest), slice_.cells);
+    view_.slots = static_cast<cl_uint>(longest);
+}
+
+std::function<Validation()> FixedStorage::validate() {
+    struct Check {
+        CellScan::Totals in_slots, all;
+        Counters counters;
+        ReadbackFence done;
+    };
+    const auto check = std::make_shared<Check>();
+    scan_.sum(pool_.heads().cl(), view_.slots);
+    check->done = scan_.read_later(check->in_slots);
+    scan_.sum(pool_.heads().cl(), CELLIST_NONE);
+    check->done = scan_.read_later(check->all);
+    check->done = pool_.read(check->counters);
+    return [check, expected = expected_] {
+        check->done.wait();
+        // The counts are all that says which slots are in use: they must be those of the build, and
+        // add up to what was stored and to what was dropped.
+        const std::uint64_t stored = check->in_slots.sum;
+        const std::uint64_t lost =
+            stored > expected->stored ? stored - expected->stored : expected->stored - stored;
+        const std::uint64_t over = check->all.sum - stored;
+        const Counters::Sum counters = check->counters.sum();
+        // Counts end at their limit, where what was dropped goes on.
+        const bool adds_up = check->all.longest < CELLIST_CELL_COUNT_MAX ? over == counters.dropped
+                                                                         : over <= counters.dropped;
+        const bool sound = adds_up && check->all.hash == expected->counts_hash;
+        return Validation{sound ? std::uint64_t{0} : std::uint64_t{1}, 0, lost, counters.late, {}};
+    };
+}
+
+}  // namespace cellist::detail

@@ -1,0 +1,90 @@
+#include <algorithm>
+
+#include "cellist_kernels.hpp"
+#include "storage/storages.hpp"
+
+namespace cellist::detail {
+
+namespace {
+
+constexpr std::uint64_t default_capacity_nodes = 65536;
+
+}  // namespace
+
+LinkedStorage::LinkedStorage(RecordKernels& kernels, const Shape& shape,
+                             const ListsOptions& options)
+    : ListStorage(kernels, shape, options, CELLIST_LINKED,
+                  {.node_bytes = node_layout(kernels.record()).size,
+                   .head_words_a_cell = 1,
+                   .is_linked = true}) {
+    std::uint64_t capacity =
+        options.capacity_nodes.value_or(std::max(shape.cells(), default_capacity_nodes));
+    if (!options.capacity_nodes && pool_.refusal(capacity)) capacity = 0;
+    allocate_first(capacity);
+    clear();
+}
+
+void LinkedStorage::clear() {
+    clear_words(CELLIST_NONE, 0, shape_.cells());
+    expect_nothing();
+}
+
+bool LinkedStorage::end_pass() {
+    reading_ = pool_.read(counters_);
+    return false;
+}
+
+bool LinkedStorage::review(BuildReport& report) {
+    const Counters::Sum counters = wait_for_counters();
+    update(report, counters, counters.allocated);
+    if (counters.dropped == 0 || options_.overflow == Overflow::drop) return true;
+
+    const std::uint64_t demand = counters.allocated + counters.dropped;
+    pool_.require(demand, report);
+    pool_.grow(demand, report);
+    return false;
+}
+
+void LinkedStorage::make_whole(bool without_nodes) {
+    if (without_nodes) pool_.allocate(0);
+}
+
+std::uint64_t LinkedStorage::nodes_for(std::uint64_t total, std::uint64_t, std::uint64_t) const {
+    return total;
+}
+
+void LinkedStorage::reserve(std::uint64_t total, std::uint64_t) {
+    if (options_.overflow == Overflow::grow && capacity_nodes() < total)
+        pool_.allocate_for_slice(total, slice_.cells);
+}
+
+std::function<Validation()> LinkedStorage::validate() {
+    struct Check {
+        Memory reached;
+        Findings findings;
+        Counters counters;
+        ReadbackFence done;
+    };
+    const auto check = std::make_shared<Check>();
+    constexpr cl_uint zero = 0;
+    check->reached = Memory(pool_.device().state(), (pool_.nodes_count() + 31) / 32, sizeof zero,
+                            "validation buffer");
+    check->findings.memory = memory_for_findings();
+    check->reached.fill(&zero, sizeof zero, check->reached.size_bytes());
+    Arguments arguments;
+    add_to(arguments);
+    arguments.add(check->reached.cl());
+    Kernel& kernel = kernels_.get({{"validate_linked.cl", kernels::validate_linked_cl}},
+                                  "cellist_validate_linked", mode());
+    check->done = find(check->findings, kernel, arguments);
+    check->done = pool_.read(check->counters);
+    return [check, expected = expected_] {
+        check->done.wait();
+        const cellist_findings& found = check->findings.found;
+        return Validation{found.broken, found.repeated,
+                          expected->stored - std::min<std::uint64_t>(expected->stored, found.nodes),
+                          check->counters.sum().late, bad_cell(found)};
+    };
+}
+
+}  // namespace cellist::detail

@@ -1,0 +1,175 @@
+#include <algorithm>
+
+#include "cellist_kernels.hpp"
+#include "storage/storages.hpp"
+
+namespace cellist::detail {
+
+namespace {
+
+/// Which member of a record the key is. Throws Error for the key of another record.
+cl_uint member_index(const RecordType& record, const NearestKey& key) {
+    if (key.record != record.name)
+        throw Error("nearest() names a member of " + key.record + ", and the lists are of " +
+                    record.name);
+    const auto member =
+        std::find_if(record.members.begin(), record.members.end(),
+                     [&](const RecordMember& candidate) { return candidate.name == key.member; });
+    return static_cast<cl_uint>(member - record.members.begin());
+}
+
+/// No list outgrows its slots, so nothing grows, and a build that is reviewed may still change the
+/// lists.
+ListsOptions without_growth(ListsOptions options) {
+    options.overflow = Overflow::stop;
+    return options;
+}
+
+}  // namespace
+
+NearestStorage::NearestStorage(RecordKernels& kernels, const Shape& shape,
+                               const ListsOptions& options)
+    : ListStorage(kernels, shape, without_growth(options), CELLIST_FIXED,
+                  {.node_bytes = kernels.record().size,
+                   // One row of thresholds: more come with the ties.
+                   .head_words_a_cell = std::uint64_t{CELLIST_ROW_LEAST} +
+                                        options.storage.nearest_key()->slots + 1}),
+      scan_(pool_.device(), shape.cells(), 0),
+      selection_memory_(pool_.device(), 1, sizeof selection_, "selection") {
+    const NearestKey& key = *options.storage.nearest_key();
+    view_.key_member = member_index(record(), key);
+    allocate_first(std::uint64_t{key.slots} * shape.cells());
+    view_.slots = key.slots;
+    clear();
+}
+
+void NearestStorage::clear() {
+    clear_words(0, 0, shape_.cells());
+    expect_nothing();
+}
+
+void NearestStorage::start() {
+    ListStorage::start();
+    selecting_ = false;
+    view_.threshold_words = 0;
+    pool_.fill_heads(view_.slots, row(CELLIST_ROW_REMAINING), shape_.cells());
+}
+
+void NearestStorage::begin_pass() {
+    clear();
+    if (!selecting_) {
+        prepare_threshold_pass();
+        view_.mode = CELLIST_THRESHOLD_PASS;
+    } else {
+        pool_.fill_heads(0, row(CELLIST_ROW_EQUALS), shape_.cells());
+        view_.mode = CELLIST_SELECTION_PASS;
+    }
+}
+
+/// Room for the thresholds of one more word, and no word among the least.
+void NearestStorage::prepare_threshold_pass() {
+    const std::uint64_t words = row(CELLIST_ROW_LEAST + view_.slots + view_.threshold_words + 1);
+    const Memory& heads = pool_.heads();
+    if (heads.size_bytes() < words * sizeof(cl_uint)) {
+        const std::uint64_t more = words * sizeof(cl_uint) - heads.size_bytes();
+        if (!pool_.has_room_for(more))
+            throw MemoryError(
+                "records that are equal in " + options_.storage.nearest_key()->member +
+                " take another word of thresholds: " + std::to_string(bytes() + more) +
+                " bytes in all, over the budget of " + std::to_string(options_.budget_bytes) +
+                ": raise budget_bytes");
+        Memory wider(pool_.device(), words, sizeof(cl_uint), "head buffer");
+        if (heads.size_bytes() > 0)
+            opencl([&] {
+                pool_.device()->ordered_queue().enqueueCopyBuffer(heads.cl(), wider.cl(), 0, 0,
+                                                                  heads.size_bytes());
+            });
+        pool_.replace_heads(std::move(wider));
+    }
+    pool_.fill_heads(CELLIST_NONE, row(CELLIST_ROW_LEAST), row(view_.slots));
+}
+
+/// Runs one of the kernels of nearest.cl over all cells.
+void NearestStorage::run(const char* name, const Memory* selection) {
+    Arguments arguments;
+    add_to(arguments);
+    if (selection != nullptr) arguments.add(selection->cl());
+    kernels_.get({{"nearest.cl", kernels::nearest_cl}}, name, CELLIST_SELECTION_PASS)
+        .enqueue(Range::padded(shape_.cells()), arguments);
+}
+
+bool NearestStorage::end_pass() {
+    if (!selecting_) {
+        reading_ = pool_.read(threshold_pass_);
+        view_.mode = CELLIST_SELECTION_PASS;
+        run("cellist_set_thresholds");
+        ++view_.threshold_words;
+        selecting_ = true;
+        view_.mode = CELLIST_FIXED;
+        return true;
+    }
+    constexpr cl_uint zero = 0;
+    selection_memory_.fill(&zero, sizeof zero, sizeof selection_);
+    run("cellist_check_selection", &selection_memory_);
+    view_.mode = CELLIST_FIXED;
+    reading_ = selection_memory_.read_later(&selection_, sizeof selection_);
+    scan_.sum(pool_.heads().cl(), view_.slots);
+    reading_ = scan_.read_later(kept_);
+    reading_ = pool_.read(counters_);
+    return false;
+}
+
+bool NearestStorage::review(BuildReport& report) {
+    const Counters::Sum selected = wait_for_counters();
+    update(report, selected, kept_.sum);
+    expected_->counts_hash = kept_.hash;
+    const Counters::Sum compared = threshold_pass_.sum();
+    const std::uint64_t compared_records = compared.dropped + compared.rejected;
+    if (selection_.unrepeated > 0 || compared.rejected != selected.rejected ||
+        compared_records != report.attempted)
+        throw UnrepeatableError("the kernel inserted " + std::to_string(report.attempted) +
+                                " records when it filled the slots, and " +
+                                std::to_string(compared_records) +
+                                " or different ones when it compared them: it must insert the same "
+                                "records every time, or use "
+                                "another storage than nearest()");
+    // Records that are equal in every word are the same: any of them will do.
+    if (selection_.undecided == 0 || view_.threshold_words >= selection_.words) return true;
+    selecting_ = false;
+    return false;
+}
+
+void NearestStorage::make_whole(bool) {
+    view_.mode = CELLIST_FIXED;
+    selecting_ = false;
+}
+
+std::uint64_t NearestStorage::nodes_for(std::uint64_t, std::uint64_t, std::uint64_t cells) const {
+    return view_.slots * cells;
+}
+
+std::function<Validation()> NearestStorage::validate() {
+    struct Check {
+        CellScan::Totals all;
+        Counters counters;
+        ReadbackFence done;
+    };
+    const auto check = std::make_shared<Check>();
+    scan_.sum(pool_.heads().cl(), CELLIST_NONE);
+    check->done = scan_.read_later(check->all);
+    check->done = pool_.read(check->counters);
+    return [check, expected = expected_, slots = view_.slots] {
+        check->done.wait();
+        // The counts are all that says which slots are in use.
+        const std::uint64_t stored = check->all.sum;
+        const bool sound = check->all.longest <= slots && check->all.hash == expected->counts_hash;
+        return Validation{
+            sound ? std::uint64_t{0} : std::uint64_t{1},
+            0,
+            stored > expected->stored ? stored - expected->stored : expected->stored - stored,
+            check->counters.sum().late,
+            {}};
+    };
+}
+
+}  // namespace cellist::detail
