@@ -12,7 +12,8 @@ namespace cellist::detail {
 /// Page-locked host memory of a device, in blocks, through which small reads go: docs/adr/017.
 class PinnedStaging : public std::enable_shared_from_this<PinnedStaging> {
 public:
-    static constexpr std::size_t block_bytes = 16384;
+    /// Holds the counters of any pool on a GPU: see node_pool.cpp.
+    static constexpr std::size_t block_bytes = 20480;
 
     PinnedStaging(cl::Context context, cl::CommandQueue queue)
         : context_(std::move(context)), queue_(std::move(queue)) {}

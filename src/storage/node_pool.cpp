@@ -12,6 +12,8 @@ namespace cellist::detail {
 static_assert(Shape::extent_max == CELLIST_EXTENT_MAX);
 static_assert(Shape::cells_max < CELLIST_NONE);
 static_assert(sizeof(cellist_thread_block) == sizeof(cellist_shard));
+static_assert(((1u << CELLIST_SHARD_BITS_MAX) + 1) * sizeof(cellist_shard) <=
+              PinnedStaging::block_bytes);
 
 namespace {
 
