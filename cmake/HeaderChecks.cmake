@@ -37,5 +37,6 @@ function(cellist_add_header_checks name)
 
     add_library(${name} OBJECT ${sources})
     target_link_libraries(${name} PRIVATE ${arg_TARGET} cellist_warnings)
+    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O0>)
     target_include_directories(${name} SYSTEM PRIVATE ${extra_include_dirs})
 endfunction()
