@@ -1,5 +1,6 @@
 #include "command_line.hpp"
 
+#include <array>
 #include <charconv>
 #include <deque>
 #include <iostream>
@@ -30,6 +31,13 @@ cellist::Storage read_storage(const std::string& text) {
          {cellist::Storage::linked, cellist::Storage::counted, cellist::Storage::fixed})
         if (text == name_of(storage)) return storage;
     refuse("--storage", text, "linked, counted or fixed");
+}
+
+// The fewest digits that are read as this number again.
+std::string shortest(double number) {
+    std::array<char, 32> digits{};
+    const auto [end, error] = std::to_chars(digits.begin(), digits.end(), number);
+    return {digits.begin(), end};
 }
 
 template <class Number>
@@ -77,6 +85,14 @@ void CommandLine::add_arguments(const std::string& name, const std::string& what
                                 std::function<void(const std::vector<std::string>&)> read) {
     parser_->app.add_option(name, parser_->arguments, what)->type_name(type);
     parser_->reads.emplace_back([this, read = std::move(read)] { read(parser_->arguments); });
+}
+
+void CommandLine::add_real(const std::string& name, double& value, double least, double most,
+                           const std::string& what, const std::string& type) {
+    add(name, shortest(value), what, type, [&value, name, least, most](const std::string& text) {
+        value = read_between(name, text, least, most,
+                             "a number from " + shortest(least) + " to " + shortest(most));
+    });
 }
 
 void CommandLine::add_storage(cellist::Storage& storage) {

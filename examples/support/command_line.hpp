@@ -72,6 +72,9 @@ public:
                 value = static_cast<Number>(read_number(name, text, least, most));
             });
     }
+    /// Any number.
+    void add_real(const std::string& name, double& value, double least, double most,
+                  const std::string& what, const std::string& type);
     /// --storage linked|counted|fixed
     void add_storage(cellist::Storage& storage);
     /// --seed N

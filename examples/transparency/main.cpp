@@ -3,8 +3,6 @@
 #include <optional>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include "camera.hpp"
 #include "command_line.hpp"
 #include "files.hpp"
@@ -26,32 +24,21 @@ struct Options {
 /// Returns the text to print if the command line asks for help.
 std::optional<std::string> parse_options(Options& options, int count,
                                          const char* const* arguments) {
-    CLI::App app{"Draws a mesh whose every surface is transparent.", "transparency"};
-    app.add_option("mesh", options.mesh, "mesh to read: PLY, OBJ, glTF, STL, OFF, ...")
-        ->type_name("MESH")
-        ->required();
-    app.add_option("--out", options.out, "picture to write: .png, .jpg, .pfm or .exr")
-        ->type_name("FILE")
-        ->capture_default_str();
-    app.add_option("--alpha", options.alpha, "opacity of a surface that faces the eye")
-        ->check(CLI::Range(0.0, 1.0))
-        ->capture_default_str();
-    app.add_option("--width", options.width, "of the picture in pixels")
-        ->check(CLI::Range(1, RASTER_SIDE_MAX))
-        ->capture_default_str();
-    app.add_option("--height", options.height, "of the picture in pixels")
-        ->check(CLI::Range(1, RASTER_SIDE_MAX))
-        ->capture_default_str();
-    app.add_option("--azimuth", options.camera.azimuth_degrees, "of the camera, in degrees")
-        ->capture_default_str();
-    app.add_option("--elevation", options.camera.elevation_degrees, "of the camera, in degrees")
-        ->check(CLI::Range(-90.0, 90.0))
-        ->capture_default_str();
-    app.add_option("--device", options.device,
-                   "index or part of the name of the device; else CELLIST_DEVICE, a GPU, or the "
-                   "first")
-        ->type_name("D");
-    return support::parse_command_line(app, count, arguments);
+    support::CommandLine line("transparency", "Draws a mesh whose every surface is transparent.");
+    line.add_text("mesh", options.mesh, "mesh file (PLY, OBJ, glTF, STL, OFF, ...)", "MESH");
+    line.add_text("--out", options.out, "picture to write: .png, .jpg, .pfm or .exr", "FILE");
+    line.add_real("--alpha", options.alpha, 0, 1, "opacity of a surface that faces the eye", "A");
+    line.add_number("--width", options.width, 1, RASTER_SIDE_MAX, "width in pixels");
+    line.add_number("--height", options.height, 1, RASTER_SIDE_MAX, "height in pixels");
+    line.add_real("--azimuth", options.camera.azimuth_degrees, -1e6, 1e6,
+                  "azimuth of the camera, in degrees", "DEGREES");
+    line.add_real("--elevation", options.camera.elevation_degrees, -90, 90,
+                  "elevation of the camera, in degrees", "DEGREES");
+    line.add_device(options.device);
+    line.add_check([&] {
+        if (options.mesh.empty()) throw support::InputError("no mesh given (see --help)");
+    });
+    return line.parse(count, arguments);
 }
 
 void run(const Options& options) {
