@@ -86,28 +86,29 @@ void check_outputs(const Options& options) {
 void refuse_idle_options(const support::CommandLine& line, const Options& options) {
     const bool has_budget = options.budget.has_value(), one_frame = options.frames == 1;
     const bool has_nodes = method_named(options.method).has_nodes;
+    const auto idle_if = [](bool idle, const std::string& before, const char* name,
+                            const char* after) {
+        std::string reason = before;
+        reason += name;
+        reason += after;
+        return support::IdleOption{name, idle, std::move(reason)};
+    };
     const auto chosen = [&](const char* name) {
-        return support::IdleOption{
-            name, has_budget,
-            "--budget chooses what " + std::string(name) + " sets: leave one of them out"};
+        return idle_if(has_budget, "--budget chooses what ", name, " sets: leave one of them out");
     };
     const auto not_compared = [&](const char* name) {
-        return support::IdleOption{
-            name, has_budget,
-            "--budget compares settings without " + std::string(name) + ": leave one of them out"};
+        return idle_if(has_budget, "--budget compares settings without ", name,
+                       ": leave one of them out");
     };
     const auto of_budget = [&](const char* name) {
-        return support::IdleOption{name, !has_budget,
-                                   std::string(name) + " is for --budget, which is not given"};
+        return idle_if(!has_budget, "", name, " is for --budget, which is not given");
     };
     const auto of_nodes = [&](const char* name) {
-        return support::IdleOption{
-            name, !has_nodes,
-            "--method " + options.method + " keeps no fragments: leave out " + name};
+        return idle_if(!has_nodes, "--method " + options.method + " keeps no fragments: leave out ",
+                       name, "");
     };
     const auto of_frames = [&](const char* name) {
-        return support::IdleOption{name, one_frame,
-                                   std::string(name) + " needs several frames: --frames is 1"};
+        return idle_if(one_frame, "", name, " needs several frames: --frames is 1");
     };
     const support::IdleOption table[] = {
         chosen("--method"),
