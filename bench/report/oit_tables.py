@@ -50,7 +50,7 @@ def conditions(all_results):
 
 
 def frame_times(all_results):
-    head = ["frames a second", "goal on a GPU", "goal under PoCL"]
+    head = ["frames per second", "goal on a GPU", "goal under PoCL"]
     for results in all_results:
         head += [device_title(results), "two at once"]
     rows = []
