@@ -5,7 +5,7 @@ import oit
 from tables import device_title
 
 _MARKS = {True: "met", False: "MISSED", None: ""}
-_CASE_TITLES = {"dragon, 4 samples": "dragon, 4 samples a pixel"}
+_CASE_TITLES = {"dragon, 4 samples": "dragon, 4 samples per pixel"}
 
 
 def goals_as_text(results):
