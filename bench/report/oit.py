@@ -14,7 +14,7 @@
 
 SECTIONS = ("frame_times", "exact_methods", "fewer_layers", "plain_cpp", "accuracy", "budget_grid", "left_out")
 
-# The goals in frames a second.
+# The goals in frames per second.
 FRAMES_PER_SECOND = {
     "teapot": {"gpu": 20000, "cpu": 60},
     "dragon": {"gpu": 10000, "cpu": 25},

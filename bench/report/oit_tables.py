@@ -5,7 +5,7 @@ import oit
 from tables import device_title
 
 _MARKS = {True: "met", False: "MISSED", None: ""}
-_CASE_TITLES = {"dragon, 4 samples": "dragon, 4 samples a pixel"}
+_CASE_TITLES = {"dragon, 4 samples": "dragon, 4 samples per pixel"}
 
 
 def goals_as_text(results):
@@ -50,7 +50,7 @@ def conditions(all_results):
 
 
 def frame_times(all_results):
-    head = ["frames a second", "goal on a GPU", "goal under PoCL"]
+    head = ["frames per second", "goal on a GPU", "goal under PoCL"]
     for results in all_results:
         head += [device_title(results), "two at once"]
     rows = []

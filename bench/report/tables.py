@@ -79,7 +79,7 @@ def ratios_as_markdown(all_results):
 
 def conditions_as_markdown(all_results):
     """The conditions of the runs."""
-    lines = ["| device | driver | effort | nodes, cells | peers | commit | note |", "|---|---|---|---|---|---|---|"]
+    lines = ["| device | driver | effort | nodes, cells | alternatives | commit | note |", "|---|---|---|---|---|---|---|"]
     for results in all_results:
         peers = sorted({f["peer"] for f in results["figures"] if f["name"] == "sort_path"})
         failed = f"{len(results['failed'])} cases failed" if results.get("failed") else ""
@@ -120,7 +120,7 @@ def summary_as_markdown(all_results):
 
     for distribution, title in TITLES:
         add(f"insert, {title}", insert(distribution))
-    add("insert, random cells, with one counter for all nodes, as in the papers", insert("random", "global"))
+    add("insert, random cells, with one global counter, as in Yang et al. 2010", insert("random", "global"))
     for name, against in (("build_read_vs_sort", "radix or merge sort by cell on the same device"),
                           ("build_read_vs_cpp", "the best C++ on the same cores")):
         for distribution, title in TITLES[:3]:
@@ -129,7 +129,7 @@ def summary_as_markdown(all_results):
         add(f"sort lists of {length}, against segmented sort or `std::sort`",
             ratio("sort_vs_segmented_sort", f"lists of {length}"))
     head = "| | " + " | ".join(device_title(results) for results in all_results) + " |"
-    notes = [f"{device_title(results)}: {results['note']}." for results in all_results if results.get("note")]
+    notes = [f"{device_title(results)}: {results['note']}" for results in all_results if results.get("note")]
     return "\n".join([head, "|---|" + "---|" * len(all_results), *rows, *(["", *notes] if notes else [])])
 
 

@@ -25,7 +25,7 @@ int main() {
     std::minstd_rand r;
     for (auto& p : scene) p = {{float(r() % 1280), float(r() % 720), float(r() % 1000), 0}};
 
-    cellist::Device device = cellist::Device::choose();  // a GPU if there is one, else PoCL
+    cellist::Device device = cellist::Device::choose();  // the first GPU, else the first device
     cellist::Lists<Hit> hits(device, {1280, 720});       // grows to what the scene needs
     cellist::Buffer<cl_float4> points(device, scene);
     cellist::Kernel splat(device, source, "splat", hits);

@@ -48,7 +48,9 @@ public:
     OverflowError(const std::string& message, const BuildReport& report)
         : MemoryError(message), report_(report) {}
 
-    /// The report of the failed pass. The demand is stored + dropped.
+    /// The report of the failed pass. The records to store were stored + dropped. In
+    /// Storage::fixed, the pool needs slots for the longest list in every cell; what() has its
+    /// length.
     [[nodiscard]] const BuildReport& report() const { return report_; }
 
 private:

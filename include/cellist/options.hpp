@@ -101,8 +101,8 @@ struct ListsOptions {
     /// Slots per cell in Storage::fixed at first. The default under Overflow::grow is 4, which
     /// grows to the longest list; the other policies need a value.
     std::optional<std::uint32_t> slots = {};
-    /// Bounds the device memory that the container keeps: heads, nodes, counters, and the buffers
-    /// that sorts, downloads and builds keep for reuse. See Lists::pool_bytes().
+    /// Bounds all device memory that the container keeps: heads, nodes, counters, and the buffers
+    /// for reuse by sorts, downloads and builds. See Lists::pool_bytes().
     std::uint64_t budget_bytes = std::numeric_limits<std::uint64_t>::max();
     /// For Storage::automatic: how often kernels read all lists after each build.
     std::uint32_t expected_reads = 1;

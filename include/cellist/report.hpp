@@ -12,7 +12,7 @@ namespace cellist {
 struct BuildReport {
     std::uint64_t attempted = 0;       ///< inserts that the kernels called in the last pass
     std::uint64_t stored = 0;          ///< records in the lists
-    std::uint64_t dropped = 0;         ///< records that found no free node
+    std::uint64_t dropped = 0;         ///< no node was free, or nearest() kept others
     std::uint64_t rejected = 0;        ///< records for cells outside the shape
     std::uint64_t capacity_nodes = 0;  ///< nodes in the pool after the build
     /// How often the kernels ran: 1 in Storage::linked and Storage::fixed; 2 in Storage::counted,

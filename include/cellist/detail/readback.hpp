@@ -20,8 +20,8 @@ struct PendingRead {
     std::size_t bytes = 0;
 };
 
-/// Data on its way to host memory. Blocks at the end of its life until the memory is free:
-/// declare it behind the memory.
+/// Data on its way to host memory. Blocks at the end of its life until the memory is free: declare
+/// it after the memory.
 class ReadbackFence {
 public:
     ReadbackFence() = default;

@@ -24,7 +24,7 @@ struct RecordType {
     std::vector<RecordMember> members;
 };
 
-/// The types that a program needs, each behind the types that it is made of.
+/// The types that a program needs, each after the types that it is made of.
 struct Definitions {
     std::vector<RecordType> records;
     std::vector<std::string> texts;  ///< definitions of types that are not records, in order
