@@ -79,6 +79,7 @@ std::shared_ptr<Build> Build::start(std::vector<ListsCore*> containers,
     for (ListsCore* container : build->containers_) {
         take_counts(*container);
         container->make_ready();
+        container->release_kept_buffers();
     }
     build->reports_.resize(build->containers_.size());
     build->enter(Phase::building);

@@ -278,6 +278,12 @@ void ListsCore::pack(const cl::Buffer& offsets,
     gather(0, shape_.cells(), words, allocate(most_records()), declaration, member);
 }
 
+void ListsCore::release_kept_buffers() {
+    if (!in_use().pool().has_budget()) return;
+    scan_.reset();
+    sorter_.reset();
+}
+
 /// How many records the kernels insert into each cell. The report says that all of them are
 /// dropped.
 std::vector<cl_uint> ListsCore::count(const std::function<void()>& insert, BuildReport& report) {
@@ -323,6 +329,7 @@ BuildReport ListsCore::build_slices(const std::function<void()>& insert,
         const BuildReport counted =
             std::exchange(all, {.attempted = all.attempted, .rejected = all.rejected, .passes = 1});
         for (std::uint64_t first = 0; first < shape_.cells();) {
+            release_kept_buffers();
             const PlannedSlice slice = plan_slice(first, counts);
             storage.clear();
             storage.set_slice(slice.range);

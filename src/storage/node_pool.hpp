@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -57,6 +58,9 @@ public:
     /// Owns all that the storage keeps.
     [[nodiscard]] const MemoryOwner& device() const { return device_; }
     [[nodiscard]] std::uint64_t bytes() const { return device_.bytes(); }
+    [[nodiscard]] bool has_budget() const {
+        return budget_bytes_ != std::numeric_limits<std::uint64_t>::max();
+    }
     /// Whether the budget and the device allow for a storage of this size.
     [[nodiscard]] bool allows(std::uint64_t all_bytes) const;
     [[nodiscard]] bool has_room_for(std::uint64_t more_bytes) const {

@@ -45,7 +45,7 @@ TEST_CASE("damaged PLY headers are refused with the line") {
         head + "element face 1\nproperty int vertex_indices\nend_header\n" + corners + "3\n",
         "vertex_indices");
     check_refused("a.ply", head.substr(0, head.find("property float z")) + list + corners, "'z'");
-    check_refused("a.ply", head, "no end");
+    check_refused("a.ply", head, "does not end");
 }
 
 TEST_CASE("damaged PLY data are refused with the line or the byte") {

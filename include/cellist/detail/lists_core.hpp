@@ -121,6 +121,9 @@ public:
     void make_ready() const;
     /// The same, unless commands that are enqueued next find complete lists anyway.
     void make_ready_for_commands() const;
+    /// Gives back what sorts and downloads keep for the next time, if a budget bounds the
+    /// container: the pool of a build may need the room.
+    void release_kept_buffers();
     /// Throws Error if the function that inserts uses the container that it fills.
     void refuse_while_building() const;
     /// The same, and throws Error if the caller is reading a slice of the container.

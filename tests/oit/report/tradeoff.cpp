@@ -268,7 +268,7 @@ TEST_CASE("what cannot be compared is refused in a line") {
           {"extreme-opaque --size 8x8", "transparent"},
           {"knot.obj --methods nosuch", "weighted"},
           {"knot.obj --methods ,", "''"},
-          {"knot.obj --methods weighted --blend additive", "other"},
+          {"knot.obj --methods weighted --blend additive", "only surfaces"},
           {"knot.obj --frames 0", "1 to"},
           {"knot.obj --size 0x1", "0x1"},
           {"knot.obj --html missing/a.html", "missing"},
