@@ -25,7 +25,7 @@ kernel void cellist_set_thresholds(CELLIST_LISTS(CELLIST_RECORD, lists)) {
 
 // After a selection pass: whether the thresholds decide, and whether the cell has the records that
 // the threshold passes found: those before the thresholds, and as many of their equals as remain.
-// Where the thresholds are no record's, but the end of all words, there may be fewer.
+// If all thresholds are the largest word, no record defined them, and there may be fewer.
 kernel void cellist_check_selection(CELLIST_LISTS(CELLIST_RECORD, lists),
                                     volatile global cellist_selection* selection) {
     const cellist_view lists_view = cellist_view_of(lists);

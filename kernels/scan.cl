@@ -4,11 +4,11 @@
 //   offsets   cells + 1   out: where lists with these counts begin, none over `capacity`. May be
 //                         heads, even in the place of the counts
 //   sums      blocks    the sum of min(count, limit) over a block, in 64 bits; then, in its place,
-//                       sum of all blocks before it
+//                       the sum of all blocks before it
 //   hashes    blocks    the sum of a hash of each cell and its count
 //   maxima    blocks    the largest count of a block
-//   totals    3         out: the sum of min(count, limit) over all cells, the largest count, the
-//                       of the hashes
+//   totals    3         out: the sum of min(count, limit) over all cells, the largest count, and
+//                       the sum of the hashes
 //
 // A work-group of CELLIST_SCAN_GROUP items has a block of CELLIST_SCAN_GROUP * CELLIST_SCAN_CELLS
 // cells, and there are cells / that + 1 blocks. One work-group sums up the blocks. Barriers stand

@@ -3,13 +3,20 @@
 // The order is that of cellist_sort_key(record), then that of the record's scalars. The host
 // defines
 //
-//   CELLIST_SORT_KEY_BITS   32 or 64, what the key needs
-//   CELLIST_SORT_CHUNK_SIZE records that are ranked together, a power of two up to 256
-//   CELLIST_SORT_WIDTH      records that a work-item ranks at once: 4, 8 or 16, at most the slots
-//   CELLIST_SORT_TEAM       work-items that sort a list, a power of two
-//   CELLIST_SORT_ITEMS      work-items that sort together, a power of two. More than one are a
-//                           work-group and share local memory (GPUs); one needs neither (CPUs)
-//   CELLIST_SORT_PIECE      the type of the pieces in which nodes too large for private memory move
+//   CELLIST_SORT_KEY_BITS      32 or 64, what the key needs
+//   CELLIST_SORT_KEEPS_KEYS    1 if a merge reads stored keys, 0 if it computes them again
+//   CELLIST_SORT_CHUNK_SIZE    records that are ranked together, a power of two up to 256
+//   CELLIST_SORT_WIDTH         records that a work-item ranks at once: 4 or 8
+//   CELLIST_SORT_ITEMS         work-items that sort together, a power of two. More than one are a
+//                              work-group and share local memory (GPUs); one needs neither (CPUs)
+//   CELLIST_SORT_TEAM          work-items that sort a list, a power of two
+//   CELLIST_SORT_LISTS         lists that CELLIST_SORT_ITEMS work-items sort, or segments of lists
+//                              that a work-item traverses
+//   CELLIST_SORT_MERGE_ITEMS   nodes that a work-item merges, a power of two
+//   CELLIST_SORT_TOP_K         the largest k of a partial sort, up to 64
+//   CELLIST_SORT_SEGMENT_BITS  2^CELLIST_SORT_SEGMENT_BITS nodes of the pool have one splitter
+//   CELLIST_SORT_PIECE         the type of the pieces in which large nodes move; not defined if
+//                              nodes move whole
 //
 // and after this file cellist_sort_key(pointer to a record), which maps the key to an unsigned
 // integer of the same order. If the user's expression is not an order, its value may differ from

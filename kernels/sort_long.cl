@@ -16,12 +16,12 @@
 //   chunk_owners  chunks_max           the list of each chunk
 //   heads         cells                heads of the lists that move
 //   nodes         capacity_nodes       their nodes
-//   from, to      capacity_nodes       the pools; every second pass goes from the one that holds the
-//                                      lists to the other
-//   keys          capacity_nodes       the key of each node of the lists, if CELLIST_SORT_KEEPS_KEYS
-//                                      is not 0; keys_from and keys_to go with the pools. Work-items
-//                                      that merge parts of a list must agree on where these end, so
-//                                      the key is computed once a record
+//   from, to      capacity_nodes       the pools; every second pass goes from the pool that holds
+//                                      the lists to the other
+//   keys          capacity_nodes       if CELLIST_SORT_KEEPS_KEYS is not 0: the key of each node of
+//                                      the lists. keys_from and keys_to go with the pools.
+//                                      Work-items that merge parts of a list must agree on where
+//                                      the parts end, so each key is computed once
 //
 // A contiguous list stays a list between any two of these kernels. Every loop is bounded, and no
 // link leads outside of the pool, whatever the links are.

@@ -2,8 +2,8 @@
 // they match the counts, and that every list was filled.
 //
 //   offsets    cells + 1   where lists with these counts begin; the heads, to skip this check
-//   findings   1   in: 0; out: lists that begin or end elsewhere, before they begin, after the pool;
-//                  nodes that no record was written to, nodes of all lists
+//   findings   1           in: 0; out: broken, the lists with impossible or other offsets;
+//                          unfilled, the nodes that have no record; nodes, those of all lists
 //
 // One work-item a cell; the range is padded to whole work-groups.
 #include <cellist/lists.clh>

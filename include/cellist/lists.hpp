@@ -286,7 +286,7 @@ public:
     }
 
     [[nodiscard]] const Shape& shape() const { return core_->shape(); }
-    /// Returns the number of nodes in the pool.
+    /// Returns how many records surely fit.
     [[nodiscard]] std::uint64_t capacity_nodes() const { return core_->capacity_nodes(); }
     /// Returns the size of all device memory that the container keeps: heads, nodes, counters, and
     /// the buffers for reuse by sorts, downloads and builds. budget_bytes bounds it.

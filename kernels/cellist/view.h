@@ -129,7 +129,7 @@ typedef struct cellist_findings {
 
 // What the kernels that sort find, from 0.
 typedef struct cellist_sort_state {
-    CELLIST_UINT nodes;                           // of linked lists, that have their new address
+    CELLIST_UINT nodes;                           // of the lists that were sorted
     CELLIST_UINT chunks;                          // of all long lists
     CELLIST_UINT longest;                         // nodes of a long list
     CELLIST_UINT broken;                          // lists with links that no build makes

@@ -1,5 +1,5 @@
-// The program `cellist`: lists the OpenCL devices of this machine, checks that cellist works on them,
-// and measures its storages there.
+// The program `cellist`: lists the OpenCL devices of this machine, checks that cellist works on
+// them, and measures its storages there.
 
 #include <cerrno>
 #include <iostream>

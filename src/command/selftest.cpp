@@ -105,8 +105,8 @@ public:
     explicit Selftest(const Device& device) : device_(device) {
         std::mt19937 random(20100628);
         inserts_.resize(insert_count(device.info()));
-        // One long list has a quarter of the records. Its inserts come last, so that a test can leave
-        // them out: the longest list decides the number of fixed slots for all cells.
+        // One long list has a quarter of the records. Its inserts come last, so that a test can
+        // leave them out: the longest list decides the number of fixed slots for all cells.
         even_ = inserts_.size() - inserts_.size() / 4;
         for (cl_uint i = 0; SelftestInsert & insert : inserts_) {
             const bool hot = i >= even_;

@@ -104,7 +104,7 @@ std::string build_log(const cl::Program& program, const cl::Device& device) {
     }
 }
 
-constexpr const char* no_platform =
+constexpr const char* no_device =
     "no OpenCL device found: install a driver, or PoCL for the CPU (pocl-opencl-icd)";
 
 }  // namespace
@@ -114,7 +114,7 @@ Device Device::choose() {
     if (selector != nullptr && *selector != '\0') return choose(selector);
     return detail::opencl([] {
         const std::vector<cl::Device> devices = all_devices();
-        if (devices.empty()) throw Error(no_platform);
+        if (devices.empty()) throw Error(no_device);
         const auto gpu = std::find_if(devices.begin(), devices.end(), [](const cl::Device& device) {
             return (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_GPU) != 0;
         });
@@ -125,7 +125,7 @@ Device Device::choose() {
 Device Device::choose(std::string_view selector) {
     return detail::opencl([&] {
         const std::vector<cl::Device> devices = all_devices();
-        if (devices.empty()) throw Error(no_platform);
+        if (devices.empty()) throw Error(no_device);
 
         std::string known;
         for (std::size_t i = 0; i < devices.size(); ++i)

@@ -12,11 +12,11 @@
 namespace cellist::detail {
 
 /// Memory where the threads of a processor leave records in a single pass, in blocks of their own
-/// for the partition of each record's cell. See mode PARTITIONED in view.h.
+/// for the partition of each record's cell. counted.clh describes mode PARTITIONED.
 class Partitions {
 public:
     struct Plan {
-        std::uint64_t records = 0;  ///< that fit from a thread a compute unit
+        std::uint64_t records = 0;  ///< that fit if one thread per compute unit runs
         std::uint64_t nodes = 0;    ///< of whole blocks
         std::size_t node_bytes = 0;
         cl_uint thread_slots = 0;  ///< of threads
