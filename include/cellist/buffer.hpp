@@ -54,7 +54,7 @@ public:
         };
         const auto state = std::make_shared<State>();
         state->elements = detail::host_memory<T>(size());
-        state->done = memory_.read_later(state->elements.data(), size() * sizeof(T));
+        state->done.add(memory_.read_later(state->elements.data(), size() * sizeof(T)));
         return {state->done.event(), [state] {
                     state->done.wait();
                     return std::move(state->elements);

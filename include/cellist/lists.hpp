@@ -227,7 +227,7 @@ public:
             detail::ReadbackFence done;
         };
         const auto state = std::make_shared<State>();
-        state->done = core_->read_lengths(state->lengths);
+        state->done.add(core_->read_lengths(state->lengths));
         return {state->done.event(), [state] {
                     state->done.wait();
                     return Lengths(state->lengths);

@@ -40,7 +40,7 @@ void Memory::write(const void* source, std::size_t bytes) {
 
 void Memory::read(void* target, std::size_t bytes) const {
     ReadbackFence fence;
-    fence = read_later(target, bytes);
+    fence.add(read_later(target, bytes));
     fence.wait();
 }
 

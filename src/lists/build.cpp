@@ -150,7 +150,7 @@ void Build::give(const std::weak_ptr<const ListsCore>& lists, const std::string&
         made->first_pass = Running::innermost->build.passes_;
         made->lists = lists;
         made->description = given->description();
-        made->fence = given->read_late(made->before);
+        made->fence.add(given->read_late(made->before));
         known = all.insert(all.end(), std::move(made));
     }
     const std::string name = parameter.substr(0, parameter.rfind("_nodes"));
@@ -170,7 +170,7 @@ void Build::take_counts(const ListsCore& lists) {
 void Build::count_refused(Bystander& bystander) {
     if (std::exchange(bystander.counted, true)) return;
     if (const auto lists = bystander.lists.lock())
-        bystander.fence = lists->read_late(bystander.after);
+        bystander.fence.add(lists->read_late(bystander.after));
     else
         bystander.lists.reset();
 }

@@ -22,7 +22,7 @@ public:
     ScopedStorage(ContainerStorage& place, std::unique_ptr<ListStorage> other)
         : place_(place), kept_(place.exchange(std::move(other))) {}
     ~ScopedStorage() {
-        place_.get().settle();
+        place_.get().wait_quietly();
         kept_ = place_.exchange(std::move(kept_));
     }
     ScopedStorage(const ScopedStorage&) = delete;
@@ -44,7 +44,7 @@ ListsCore::ListsCore(std::shared_ptr<DeviceState> device, Definitions definition
 
 ListsCore::~ListsCore() {
     if (state_.build) std::shared_ptr(state_.build)->abandon();
-    in_use().settle();
+    in_use().wait_quietly();
 }
 
 std::shared_ptr<Build> ListsCore::start_build(std::vector<ListsCore*> containers,
@@ -247,14 +247,14 @@ void ListsCore::download(ReadbackFence& done, std::vector<cl_uint>& offsets,
     const std::uint64_t total = most_records();
     auto* target = static_cast<std::byte*>(allocate(total));
     offsets.resize(shape_.cells() + 1);
-    done = words.read_later(offsets.data(), offsets.size() * sizeof(cl_uint));
+    done.add(words.read_later(offsets.data(), offsets.size() * sizeof(cl_uint)));
 
     const auto copy = [&](std::uint64_t begin, std::uint64_t end, std::uint64_t first,
                           std::uint64_t count) {
         if (count == 0) return;
         const Memory records(device_.state(), count, record_bytes, "download buffer");
         gather(begin, end, words, records.cl(), "struct " + kernels_->record().name + " value", "");
-        done = records.read_later(target + first * record_bytes, count * record_bytes);
+        done.add(records.read_later(target + first * record_bytes, count * record_bytes));
     };
     if (total <= most) return copy(0, shape_.cells(), 0, total);
     for (std::uint64_t begin = 0; begin < shape_.cells();) {

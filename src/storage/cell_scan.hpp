@@ -24,8 +24,8 @@ public:
     };
     /// Enqueues the sums of min(count, limit).
     void sum(const cl::Buffer& heads, cl_uint limit);
-    /// Enqueues a read of the totals of the last sum(). `totals` has them after the wait() of a
-    /// ReadbackFence that was assigned this read.
+    /// Enqueues a read of the totals of the last sum(). `totals` has them after the wait() of the
+    /// ReadbackFence to which the caller adds this read.
     [[nodiscard]] PendingRead read_later(Totals& totals) const;
     /// Enqueues a write of the offsets of the lists, none over `capacity_nodes`: one for each cell,
     /// and the end of the last list. They may overwrite the counts. Call sum() first, with the same

@@ -57,12 +57,12 @@ Counters::Sum ListStorage::wait_for_counters() {
 }
 
 void ListStorage::release_pool() noexcept {
-    settle();
+    wait_quietly();
     pool_.release();
 }
 
 void ListStorage::recover(bool without_pool) {
-    settle();
+    wait_quietly();
     make_whole(pool_.recover(without_pool));
     clear();
 }

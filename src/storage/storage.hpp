@@ -57,10 +57,10 @@ public:
     /// Whether a review can change the lists.
     [[nodiscard]] bool may_grow() const { return options_.overflow != Overflow::drop; }
 
-    /// Blocks until nothing is on its way to this object's memory. Comes before the destructor.
-    void settle() noexcept { reading_.settle(); }
+    /// Blocks until no read writes to this object's memory. Call it before the destructor.
+    void wait_quietly() noexcept { reading_.wait_quietly(); }
     /// Gives the nodes' memory back, before another storage takes this one's place. What is left
-    /// can only be destroyed, or be recovered. Blocks as settle() does.
+    /// can only be destroyed, or be recovered. Blocks as wait_quietly() does.
     virtual void release_pool() noexcept;
     /// Makes what a failed build may have left undone, with empty lists. A pool that grows is empty
     /// afterwards if there was none, or if `without_pool` says so.

@@ -78,19 +78,19 @@ bool CountedStorage::end_pass() {
     view_.mode = CELLIST_CONTIGUOUS;
     if (partitions_) {
         move_from_partitions();
-        reading_ = partitions_->starts().read_later(&partitioned_, sizeof partitioned_);
-        reading_ = pool_.read(counters_);
+        reading_.add(partitions_->starts().read_later(&partitioned_, sizeof partitioned_));
+        reading_.add(pool_.read(counters_));
         return false;
     }
     if (counted_) {
         // Nothing has changed the offsets yet, so they are compared with themselves.
-        reading_ = find(filled_, pool_.heads());
-        reading_ = pool_.read(counters_);
+        reading_.add(find(filled_, pool_.heads()));
+        reading_.add(pool_.read(counters_));
         return false;
     }
     scan_.sum(pool_.heads().cl(), CELLIST_NONE);
-    reading_ = scan_.read_later(demand_);
-    reading_ = pool_.read(counting_);
+    reading_.add(scan_.read_later(demand_));
+    reading_.add(pool_.read(counting_));
     if (options_.overflow != Overflow::drop) return false;
     // The pool is what it is: no need to look at the counts first.
     scan_.write_offsets(pool_.heads().cl(), pool_.heads().cl(), capacity_nodes());
@@ -245,9 +245,9 @@ std::function<Validation()> CountedStorage::validate() {
         Memory(pool_.device().state(), shape_.cells() + 1, sizeof(cl_uint), "validation buffer");
     scan_.sum(pool_.heads().cl(), CELLIST_NONE);
     scan_.write_offsets(pool_.heads().cl(), check->offsets.cl(), capacity_nodes());
-    check->done = find(check->findings, check->offsets);
-    check->done = scan_.read_later(check->inserted);
-    check->done = pool_.read(check->counters);
+    check->done.add(find(check->findings, check->offsets));
+    check->done.add(scan_.read_later(check->inserted));
+    check->done.add(pool_.read(check->counters));
     return [check, expected_of_build = expected_] {
         check->done.wait();
         // Sound lists that do not add up to what was stored have a wrong end; counts that do not

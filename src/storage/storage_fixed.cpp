@@ -36,8 +36,8 @@ void FixedStorage::clear() {
 
 bool FixedStorage::end_pass() {
     scan_.sum(pool_.heads().cl(), view_.slots);
-    reading_ = scan_.read_later(in_slots_);
-    reading_ = pool_.read(counters_);
+    reading_.add(scan_.read_later(in_slots_));
+    reading_.add(pool_.read(counters_));
     return false;
 }
 
@@ -94,10 +94,10 @@ std::function<Validation()> FixedStorage::validate() {
     };
     const auto check = std::make_shared<Check>();
     scan_.sum(pool_.heads().cl(), view_.slots);
-    check->done = scan_.read_later(check->in_slots);
+    check->done.add(scan_.read_later(check->in_slots));
     scan_.sum(pool_.heads().cl(), CELLIST_NONE);
-    check->done = scan_.read_later(check->all);
-    check->done = pool_.read(check->counters);
+    check->done.add(scan_.read_later(check->all));
+    check->done.add(pool_.read(check->counters));
     return [check, expected = expected_] {
         check->done.wait();
         // The counts are all that says which slots are in use: they must be those of the build, and

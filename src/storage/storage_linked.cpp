@@ -30,7 +30,7 @@ void LinkedStorage::clear() {
 }
 
 bool LinkedStorage::end_pass() {
-    reading_ = pool_.read(counters_);
+    reading_.add(pool_.read(counters_));
     return false;
 }
 
@@ -76,8 +76,8 @@ std::function<Validation()> LinkedStorage::validate() {
     arguments.add(check->reached.cl());
     Kernel& kernel = kernels_.get({{"validate_linked.cl", kernels::validate_linked_cl}},
                                   "cellist_validate_linked", mode());
-    check->done = find(check->findings, kernel, arguments);
-    check->done = pool_.read(check->counters);
+    check->done.add(find(check->findings, kernel, arguments));
+    check->done.add(pool_.read(check->counters));
     return [check, expected = expected_] {
         check->done.wait();
         const cellist_findings& found = check->findings.found;

@@ -100,7 +100,7 @@ void NearestStorage::run(const char* name, const Memory* selection) {
 
 bool NearestStorage::end_pass() {
     if (!selecting_) {
-        reading_ = pool_.read(threshold_pass_);
+        reading_.add(pool_.read(threshold_pass_));
         view_.mode = CELLIST_SELECTION_PASS;
         run("cellist_set_thresholds");
         ++view_.threshold_words;
@@ -112,10 +112,10 @@ bool NearestStorage::end_pass() {
     selection_memory_.fill(&zero, sizeof zero, sizeof selection_);
     run("cellist_check_selection", &selection_memory_);
     view_.mode = CELLIST_FIXED;
-    reading_ = selection_memory_.read_later(&selection_, sizeof selection_);
+    reading_.add(selection_memory_.read_later(&selection_, sizeof selection_));
     scan_.sum(pool_.heads().cl(), view_.slots);
-    reading_ = scan_.read_later(kept_);
-    reading_ = pool_.read(counters_);
+    reading_.add(scan_.read_later(kept_));
+    reading_.add(pool_.read(counters_));
     return false;
 }
 
@@ -156,8 +156,8 @@ std::function<Validation()> NearestStorage::validate() {
     };
     const auto check = std::make_shared<Check>();
     scan_.sum(pool_.heads().cl(), CELLIST_NONE);
-    check->done = scan_.read_later(check->all);
-    check->done = pool_.read(check->counters);
+    check->done.add(scan_.read_later(check->all));
+    check->done.add(pool_.read(check->counters));
     return [check, expected = expected_, slots = view_.slots] {
         check->done.wait();
         // The counts are all that says which slots are in use.

@@ -20,20 +20,20 @@ struct PendingRead {
     std::size_t bytes = 0;
 };
 
-/// Data on its way to host memory. Blocks at the end of its life until the memory is free: declare
-/// it after the memory.
+/// Reads into host memory that are under way. The destructor blocks until no read writes to the
+/// memory: declare the fence after the memory.
 class ReadbackFence {
 public:
     ReadbackFence() = default;
     ReadbackFence(const ReadbackFence&) = delete;
     ReadbackFence& operator=(const ReadbackFence&) = delete;
-    ~ReadbackFence() { settle(); }
+    ~ReadbackFence() { wait_quietly(); }
 
-    /// Waits for this one too. Events of a queue in order: the last stands for all.
-    ReadbackFence& operator=(PendingRead reading) {
+    /// Adds a read to those that wait() waits for. The reads of a fence complete in order, so the
+    /// event of the last read stands for all.
+    void add(PendingRead reading) {
         event_ = std::exchange(reading.event, {});
         if (reading.staged) staged_.push_back(std::move(reading));
-        return *this;
     }
     /// The event that completes when wait() has nothing to wait for. Not a copy by the bindings:
     /// those throw an error of their own.
@@ -43,7 +43,7 @@ public:
         return cl::Event(event_());
     }
 
-    /// Blocks until all has arrived where it was to go.
+    /// Blocks until the targets of all reads have their data.
     void wait() {
         if (event_() == nullptr) return;
         const cl_int code = clWaitForEvents(1, &event_());
@@ -53,9 +53,9 @@ public:
             std::memcpy(reading.target, reading.staged.get(), reading.bytes);
         staged_.clear();
     }
-    /// The same where nobody asks for the data any more. A wait that fails is tried again; a device
-    /// that cannot be waited for twice is taken for lost, and not to write any more.
-    void settle() noexcept {
+    /// Waits, and discards the data. Tries again if the wait fails. If it fails twice, the device
+    /// counts as lost and writes no more.
+    void wait_quietly() noexcept {
         if (event_() == nullptr) return;
         if (clWaitForEvents(1, &event_()) != CL_SUCCESS) clWaitForEvents(1, &event_());
         event_ = cl::Event();
