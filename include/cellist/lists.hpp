@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <cellist/detail/build.hpp>
 #include <cellist/detail/lists_core.hpp>
 #include <cellist/detail/owned.hpp>
 #include <cellist/detail/readback.hpp>
@@ -136,9 +137,8 @@ public:
     }
     [[nodiscard]] Pending<BuildReport> build_async(std::invocable auto&& insert) {
         const auto build =
-            detail::ListsCore::start_build({core_.get()}, std::forward<decltype(insert)>(insert));
-        return {detail::ListsCore::marker(*build),
-                [core = core_, build] { return finish(*build); }};
+            detail::Build::start({core_.get()}, std::forward<decltype(insert)>(insert));
+        return {build->enqueue_marker(), [core = core_, build] { return build->finish().front(); }};
     }
 
     /// Builds more records than the pool may hold, a range of cells at a time. The budget, the
@@ -282,7 +282,8 @@ public:
     /// Like validate(), but does not block.
     [[nodiscard]] Pending<Validation> validate_async() const {
         std::function<Validation()> result = core_->validate();
-        return {core_->marker(), [core = core_, result = std::move(result)] { return result(); }};
+        return {core_->enqueue_marker(),
+                [core = core_, result = std::move(result)] { return result(); }};
     }
 
     [[nodiscard]] const Shape& shape() const { return core_->shape(); }
@@ -311,9 +312,6 @@ private:
                 order};
     }
 
-    static const BuildReport& finish(detail::Build& build) {
-        return detail::ListsCore::finish(build).front();
-    }
     /// Packs the value of type M that `member` selects from each record.
     template <class M, class E>
     Packed<E> pack(const std::string& member) const {
@@ -337,7 +335,7 @@ namespace detail {
 template <std::size_t count>
 std::array<BuildReport, count> reports(Build& build) {
     std::array<BuildReport, count> result;
-    const std::vector<BuildReport>& all = ListsCore::finish(build);
+    const std::vector<BuildReport>& all = build.finish();
     for (std::size_t i = 0; i < count; ++i) result[i] = all[i];
     return result;
 }
@@ -357,7 +355,7 @@ template <class... T>
     requires(sizeof...(T) > 0)
 std::array<BuildReport, sizeof...(T)> build(std::invocable auto&& insert, Lists<T>&... lists) {
     return detail::reports<sizeof...(T)>(
-        *detail::ListsCore::start_build({&lists.core()...}, std::ref(insert)));
+        *detail::Build::start({&lists.core()...}, std::ref(insert)));
 }
 
 /// Starts the same build and does not block; see Lists::build_async. If one of the containers is
@@ -367,9 +365,8 @@ template <class... T>
 [[nodiscard]] Pending<std::array<BuildReport, sizeof...(T)>> build_async(
     std::invocable auto&& insert, Lists<T>&... lists) {
     const auto build =
-        detail::ListsCore::start_build({&lists.core()...}, std::forward<decltype(insert)>(insert));
-    return {detail::ListsCore::marker(*build),
-            [build] { return detail::reports<sizeof...(T)>(*build); }};
+        detail::Build::start({&lists.core()...}, std::forward<decltype(insert)>(insert));
+    return {build->enqueue_marker(), [build] { return detail::reports<sizeof...(T)>(*build); }};
 }
 
 }  // namespace cellist

@@ -204,7 +204,7 @@ void Device::enqueue_wait(const std::vector<cl::Event>& events) const {
     detail::opencl([&] { state_->queue.enqueueBarrierWithWaitList(&events); });
 }
 
-cl::Event Device::enqueue_marker() const { return state_->marker(); }
+cl::Event Device::enqueue_marker() const { return state_->enqueue_marker(); }
 
 namespace detail {
 
@@ -213,7 +213,7 @@ const cl::CommandQueue& DeviceState::ordered_queue() const {
     return queue;
 }
 
-cl::Event DeviceState::marker() const {
+cl::Event DeviceState::enqueue_marker() const {
     return opencl([&] {
         cl::Event event;
         queue.enqueueMarkerWithWaitList(nullptr, &event);

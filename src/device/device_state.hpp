@@ -29,7 +29,7 @@ struct DeviceState {
     /// The queue, for one command that starts after all that were enqueued before.
     const cl::CommandQueue& ordered_queue() const;
     /// Completes when all that was enqueued has.
-    [[nodiscard]] cl::Event marker() const;
+    [[nodiscard]] cl::Event enqueue_marker() const;
 
     /// The program with this source and these options. Builds it unless it is among the last ones.
     /// Always builds it if the source or the options include other files, which may have changed.

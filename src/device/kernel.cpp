@@ -5,6 +5,7 @@
 #include <numeric>
 #include <span>
 
+#include <cellist/detail/build.hpp>
 #include <cellist/kernel.hpp>
 
 #include "cellist_kernels.hpp"
@@ -12,7 +13,6 @@
 #include "device/other_queues.hpp"
 #include "device/parameter.hpp"
 #include "device/program_text.hpp"
-#include "lists/build.hpp"
 #include "storage/view.hpp"
 
 namespace cellist {
@@ -277,7 +277,8 @@ void Kernel::enqueue(const Range& range, const Arguments& arguments, cl::Event* 
         impl_->variant(arguments.modes() != 0 ? arguments.modes() : impl_->definitions.modes);
     impl_->set(variant, arguments);
     for (const Arguments::ClosedLists& closed : arguments.closed_lists())
-        detail::Build::give(closed.lists, variant.parameters[closed.index].name, impl_->name);
+        detail::Build::note_bystander(closed.lists, variant.parameters[closed.index].name,
+                                      impl_->name);
 
     const detail::OtherQueues others(*impl_->device, arguments);
     if (others.empty()) return impl_->launch(variant, range, event);

@@ -45,7 +45,7 @@ void Memory::read(void* target, std::size_t bytes) const {
 }
 
 cl::Event Memory::write_later(const void* source, std::size_t bytes) {
-    if (bytes == 0) return state_->marker();
+    if (bytes == 0) return state_->enqueue_marker();
     return opencl([&] {
         cl::Event event;
         state_->ordered_queue().enqueueWriteBuffer(buffer_, CL_FALSE, 0, bytes, source, nullptr,
@@ -55,7 +55,7 @@ cl::Event Memory::write_later(const void* source, std::size_t bytes) {
 }
 
 PendingRead Memory::read_later(void* target, std::size_t bytes, std::uint64_t from_byte) const {
-    if (bytes == 0) return {.event = state_->marker()};
+    if (bytes == 0) return {.event = state_->enqueue_marker()};
     PendingRead reading{.target = target, .bytes = bytes};
     if (bytes <= PinnedStaging::block_bytes) reading.staged = state_->staging->block();
     void* const to = reading.staged ? reading.staged.get() : target;

@@ -18,7 +18,7 @@ OtherQueues::OtherQueues(const DeviceState& user, const Arguments& arguments) : 
 cl::Event OtherQueues::run_between(const std::function<cl::Event()>& enqueue) const {
     std::vector<cl::Event> before;
     for (const DeviceState* owner : owners_) {
-        before.push_back(owner->marker());
+        before.push_back(owner->enqueue_marker());
         opencl([&] { owner->queue.flush(); });
     }
     opencl([&] { user_.queue.enqueueBarrierWithWaitList(&before); });

@@ -34,7 +34,7 @@ public:
                               unsigned mode, const std::string& definitions = {});
     [[nodiscard]] const RecordType& record() const { return definitions_.records.back(); }
     /// Owns the memory of the container that is not of its storage.
-    [[nodiscard]] const MemoryOwner& device() const { return device_; }
+    [[nodiscard]] const MemoryOwner& owner() const { return device_; }
 
 private:
     /// Enough for the lists of one container, sorted by some eight keys in turn.

@@ -1,7 +1,7 @@
-#include "lists/build.hpp"
-
 #include <algorithm>
 #include <utility>
+
+#include <cellist/detail/build.hpp>
 
 #include "device/device_state.hpp"
 #include "storage/container_storage.hpp"
@@ -11,30 +11,30 @@ namespace cellist::detail {
 /// The build whose function this thread runs, and a link to the build around it.
 class Build::Running {
 public:
-    explicit Running(Build& now) : build(now), outer(std::exchange(innermost, this)) {}
-    ~Running() { innermost = outer; }
+    explicit Running(Build& now) : build(now), outer(std::exchange(current, this)) {}
+    ~Running() { current = outer; }
     Running(const Running&) = delete;
     Running& operator=(const Running&) = delete;
 
-    static thread_local Running* innermost;
+    static thread_local Running* current;
     Build& build;
     Running* const outer;
 };
 
-thread_local Build::Running* Build::Running::innermost = nullptr;
+thread_local Build::Running* Build::Running::current = nullptr;
 
 /// Keeps the containers alive until the caller returns: the function that inserts may replace them.
-std::vector<std::shared_ptr<ListsCore>> Build::held() const {
-    std::vector<std::shared_ptr<ListsCore>> held;
-    for (ListsCore* container : containers_) held.push_back(container->shared_from_this());
-    return held;
+std::vector<std::shared_ptr<ListsCore>> Build::keep_alive() const {
+    std::vector<std::shared_ptr<ListsCore>> kept_alive;
+    for (ListsCore* container : containers_) kept_alive.push_back(container->shared_from_this());
+    return kept_alive;
 }
 
 /// Throws Error if the containers cannot be built together, or not now.
-void Build::refuse_if_unfit() const {
+void Build::require_buildable() const {
     const ListsCore& first = *containers_.front();
     for (const ListsCore* container : containers_) {
-        container->refuse_build();
+        container->require_buildable();
         if (std::count(containers_.begin(), containers_.end(), container) > 1)
             throw Error("a build names the same container twice");
         const bool same_device = container->device()->device() == first.device()->device();
@@ -74,10 +74,10 @@ void Build::fail() noexcept {
 std::shared_ptr<Build> Build::start(std::vector<ListsCore*> containers,
                                     std::function<void()> insert) {
     const std::shared_ptr<Build> build(new Build(std::move(containers), std::move(insert)));
-    build->refuse_if_unfit();
-    const auto held = build->held();
+    build->require_buildable();
+    const auto kept_alive = build->keep_alive();
     for (ListsCore* container : build->containers_) {
-        take_counts(*container);
+        count_before_clear(*container);
         container->make_ready();
         container->release_kept_buffers();
     }
@@ -95,7 +95,7 @@ std::shared_ptr<Build> Build::start(std::vector<ListsCore*> containers,
 }
 
 /// The containers may have queues of their own, of one context.
-cl::Event Build::marker() {
+cl::Event Build::enqueue_marker() {
     if (error_) std::rethrow_exception(error_);
     try {
         const DeviceState& first = *containers_.front()->device();
@@ -103,11 +103,11 @@ cl::Event Build::marker() {
         for (const ListsCore* container : containers_) {
             const DeviceState& device = *container->device();
             if (device.queue() == first.queue()) continue;
-            others.push_back(device.marker());
+            others.push_back(device.enqueue_marker());
             opencl([&] { device.queue.flush(); });
         }
-        if (others.empty()) return first.marker();
-        others.push_back(first.marker());
+        if (others.empty()) return first.enqueue_marker();
+        others.push_back(first.enqueue_marker());
         return opencl([&] {
             cl::Event event;
             first.queue.enqueueMarkerWithWaitList(&others, &event);
@@ -124,33 +124,33 @@ void Build::enqueue_passes() {
     bool another = true;
     while (another) {
         ++passes_;
-        for (ListsCore* container : containers_) container->storage().get().begin_pass();
+        for (ListsCore* container : containers_) container->storage().in_use().begin_pass();
         {
             const Running running(*this);
             insert_();
         }
         another = false;
         for (ListsCore* container : containers_)
-            if (container->storage().get().end_pass()) another = true;
+            if (container->storage().in_use().end_pass()) another = true;
     }
-    for (const auto& bystander : bystanders_) count_refused(*bystander);
+    for (const auto& bystander : bystanders_) count_late_inserts(*bystander);
 }
 
-void Build::give(const std::weak_ptr<const ListsCore>& lists, const std::string& parameter,
-                 const std::string& kernel) {
-    if (Running::innermost == nullptr) return;
+void Build::note_bystander(const std::weak_ptr<const ListsCore>& lists,
+                           const std::string& parameter, const std::string& kernel) {
+    if (Running::current == nullptr) return;
     const std::shared_ptr<const ListsCore> given = lists.lock();
     if (!given) return;
-    auto& all = Running::innermost->build.bystanders_;
+    auto& all = Running::current->build.bystanders_;
     auto known = std::find_if(all.begin(), all.end(), [&](const auto& bystander) {
         return !bystander->counted && bystander->lists.lock() == given;
     });
     if (known == all.end()) {
         auto made = std::make_unique<Bystander>();
-        made->first_pass = Running::innermost->build.passes_;
+        made->first_pass = Running::current->build.passes_;
         made->lists = lists;
         made->description = given->description();
-        made->fence.add(given->read_late(made->before));
+        made->fence.add(given->read_late_inserts(made->before));
         known = all.insert(all.end(), std::move(made));
     }
     const std::string name = parameter.substr(0, parameter.rfind("_nodes"));
@@ -159,18 +159,17 @@ void Build::give(const std::weak_ptr<const ListsCore>& lists, const std::string&
     if (std::find(uses.begin(), uses.end(), use) == uses.end()) uses.push_back(use);
 }
 
-void Build::take_counts(const ListsCore& lists) {
-    for (const Running* running = Running::innermost; running != nullptr; running = running->outer)
+void Build::count_before_clear(const ListsCore& lists) {
+    for (const Running* running = Running::current; running != nullptr; running = running->outer)
         for (const auto& bystander : running->build.bystanders_)
-            if (bystander->lists.lock().get() == &lists) count_refused(*bystander);
+            if (bystander->lists.lock().get() == &lists) count_late_inserts(*bystander);
 }
 
-/// Enqueues the reading of the number of inserts that the lists have refused, if the lists still
-/// exist.
-void Build::count_refused(Bystander& bystander) {
+/// Enqueues the reading of the number of late inserts, if the lists still exist.
+void Build::count_late_inserts(Bystander& bystander) {
     if (std::exchange(bystander.counted, true)) return;
     if (const auto lists = bystander.lists.lock())
-        bystander.fence.add(lists->read_late(bystander.after));
+        bystander.fence.add(lists->read_late_inserts(bystander.after));
     else
         bystander.lists.reset();
 }
@@ -211,7 +210,7 @@ const std::vector<BuildReport>& Build::finish() {
         throw Error("a build is finished by the function that inserts for it");
     if (phase_ == Phase::pending) {
         const auto self = shared_from_this();
-        const auto held = this->held();
+        const auto kept_alive = keep_alive();
         enter(Phase::building);
         try {
             while (!review()) enqueue_passes();

@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <utility>
 
+#include <cellist/detail/build.hpp>
 #include <cellist/detail/lists_core.hpp>
 
 #include "cellist_kernels.hpp"
 #include "device/record_kernels.hpp"
-#include "lists/build.hpp"
 #include "sort/expression.hpp"
 #include "sort/sort.hpp"
 #include "storage/cell_scan.hpp"
@@ -22,7 +22,7 @@ public:
     ScopedStorage(ContainerStorage& place, std::unique_ptr<ListStorage> other)
         : place_(place), kept_(place.exchange(std::move(other))) {}
     ~ScopedStorage() {
-        place_.get().wait_quietly();
+        place_.in_use().wait_quietly();
         kept_ = place_.exchange(std::move(kept_));
     }
     ScopedStorage(const ScopedStorage&) = delete;
@@ -44,25 +44,17 @@ ListsCore::ListsCore(std::shared_ptr<DeviceState> device, Definitions definition
 
 ListsCore::~ListsCore() {
     if (state_.build) std::shared_ptr(state_.build)->abandon();
-    in_use().wait_quietly();
+    storage_->in_use().wait_quietly();
 }
-
-std::shared_ptr<Build> ListsCore::start_build(std::vector<ListsCore*> containers,
-                                              std::function<void()> insert) {
-    return Build::start(std::move(containers), std::move(insert));
-}
-
-cl::Event ListsCore::marker(Build& build) { return build.marker(); }
-const std::vector<BuildReport>& ListsCore::finish(Build& build) { return build.finish(); }
 
 BuildReport ListsCore::build(const std::function<void()>& insert) {
-    refuse_build();
+    require_buildable();
     make_ready();
     const auto self = shared_from_this();
     try {
         const BuildReport report = storage_->build(
             [&] { return BuildReport(Build::start({this}, insert)->finish().front()); });
-        refuse_orphan(self);
+        require_owner(self);
         return report;
     } catch (...) {
         fail(false);
@@ -82,7 +74,7 @@ void ListsCore::fail(bool without_pool) noexcept {
 void ListsCore::make_ready() const {
     if (state_.build) std::shared_ptr(state_.build)->finish();
     if (state_.phase != Phase::failed) return;
-    in_use().recover(state_.without_pool);
+    storage_->in_use().recover(state_.without_pool);
     state_ = {};
 }
 
@@ -90,31 +82,29 @@ void ListsCore::make_ready_for_commands() const {
     if (!state_.build || state_.build->may_change()) make_ready();
 }
 
-ListStorage& ListsCore::in_use() const { return storage_->get(); }
-
 void ListsCore::add_to(Arguments& arguments) const {
     make_ready_for_commands();
-    in_use().add_to(arguments, is_building() ? Inserts::accepted : Inserts::refused);
+    storage_->in_use().add_to(arguments, is_building() ? Inserts::accepted : Inserts::refused);
 }
 
-void ListsCore::refuse_orphan(const std::shared_ptr<ListsCore>& self) {
+void ListsCore::require_owner(const std::shared_ptr<ListsCore>& self) {
     if (self.use_count() == 1)
         throw Error("the lists were destroyed before their build was finished");
 }
 
-void ListsCore::refuse_while_building() const {
+void ListsCore::require_not_building() const {
     if (state_.phase == Phase::building)
         throw Error("a container is used while it is built: only kernels may, to insert records");
 }
 
-void ListsCore::refuse_build() const {
-    refuse_while_building();
+void ListsCore::require_buildable() const {
+    require_not_building();
     if (state_.phase == Phase::slicing)
         throw Error("a container is built again while a slice of it is read");
 }
 
-PendingRead ListsCore::read_late(std::array<cl_uint, 2>& words) const {
-    return in_use().read_late(words);
+PendingRead ListsCore::read_late_inserts(std::array<cl_uint, 2>& words) const {
+    return storage_->in_use().read_late_inserts(words);
 }
 
 std::string ListsCore::description() const {
@@ -122,11 +112,11 @@ std::string ListsCore::description() const {
 }
 
 void ListsCore::clear() {
-    refuse_while_building();
-    Build::take_counts(*this);
+    require_not_building();
+    Build::count_before_clear(*this);
     make_ready();
     try {
-        in_use().clear();
+        storage_->in_use().clear();
     } catch (...) {
         fail(false);
         throw;
@@ -134,9 +124,9 @@ void ListsCore::clear() {
 }
 
 std::function<Validation()> ListsCore::validate() const {
-    refuse_while_building();
+    require_not_building();
     make_ready_for_commands();
-    std::function<Validation()> result = in_use().validate();
+    std::function<Validation()> result = storage_->in_use().validate();
     if (!state_.build) return result;
     return [build = state_.build, result = std::move(result)] {
         build->finish();
@@ -144,12 +134,12 @@ std::function<Validation()> ListsCore::validate() const {
     };
 }
 
-std::uint64_t ListsCore::capacity_nodes() const { return in_use().capacity_nodes(); }
-std::uint64_t ListsCore::pool_bytes() const { return in_use().bytes() + device_.bytes(); }
-unsigned ListsCore::mode() const { return in_use().mode(); }
-Storage ListsCore::storage_in_use() const { return in_use().kind(); }
+std::uint64_t ListsCore::capacity_nodes() const { return storage_->in_use().capacity_nodes(); }
+std::uint64_t ListsCore::pool_bytes() const { return storage_->in_use().bytes() + device_.bytes(); }
+unsigned ListsCore::mode() const { return storage_->in_use().mode(); }
+Storage ListsCore::storage_in_use() const { return storage_->in_use().kind(); }
 std::string ListsCore::storage_reason() const { return storage_->reason(); }
-cl::Event ListsCore::marker() const { return device_->marker(); }
+cl::Event ListsCore::enqueue_marker() const { return device_->enqueue_marker(); }
 
 Range ListsCore::cell_range() const { return Range::padded(shape_.cells()); }
 
@@ -160,18 +150,18 @@ void Arguments::add_lists(const ListsCore& lists) {
 
 unsigned read_mode(const ListsCore& lists) { return lists.mode(); }
 
-cl::Event ListsCore::sort(const SortKey& key, std::uint32_t front) {
+cl::Event ListsCore::sort(const SortKey& key, std::uint32_t top_k) {
     check_expression(key.expression);
-    refuse_while_building();
+    require_not_building();
     make_ready();
-    return sorter().sort(in_use(), key, front);
+    return sorter().sort(storage_->in_use(), key, top_k);
 }
 
 cl::Event ListsCore::sort_async(const SortKey& key) {
     check_expression(key.expression);
-    refuse_while_building();
+    require_not_building();
     make_ready_for_commands();
-    return sorter().sort_in_place(in_use(), key);
+    return sorter().sort_in_place(storage_->in_use(), key);
 }
 
 ListSorter& ListsCore::sorter() {
@@ -181,7 +171,7 @@ ListSorter& ListsCore::sorter() {
 
 /// The length of every list, at the start of a device buffer of `words` words.
 Memory ListsCore::device_lengths(std::uint64_t words) const {
-    refuse_while_building();
+    require_not_building();
     Memory lengths(device_.state(), words, sizeof(cl_uint), "length buffer");
     Arguments arguments;
     add_to(arguments);
@@ -200,7 +190,7 @@ PendingRead ListsCore::read_lengths(std::vector<cl_uint>& lengths) const {
 /// The number of records in all lists; the greatest possible number while a build that may drop is
 /// pending.
 std::uint64_t ListsCore::most_records() const {
-    return state_.build ? in_use().capacity_nodes() : in_use().stored();
+    return state_.build ? storage_->in_use().capacity_nodes() : storage_->in_use().stored();
 }
 
 /// Where each list goes when all lists lie one after the other: cells + 1 offsets.
@@ -208,7 +198,7 @@ Memory ListsCore::device_offsets() const {
     Memory words = device_lengths(shape_.cells() + 1);
     // Kept where the budget has room for it.
     const bool fits =
-        in_use().pool().has_room_for(CellScan::bytes_for(device_->info, shape_.cells()));
+        storage_->in_use().pool().has_room_for(CellScan::bytes_for(device_->info, shape_.cells()));
     std::unique_ptr<CellScan> once;
     if (!scan_)
         (fits ? scan_ : once) = std::make_unique<CellScan>(
@@ -279,7 +269,7 @@ void ListsCore::pack(const cl::Buffer& offsets,
 }
 
 void ListsCore::release_kept_buffers() {
-    if (!in_use().pool().has_budget()) return;
+    if (!storage_->in_use().pool().has_budget()) return;
     scan_.reset();
     sorter_.reset();
 }
@@ -303,7 +293,7 @@ std::vector<cl_uint> ListsCore::count(const std::function<void()>& insert, Build
 /// The cells from `first` on whose lists fit into a pool together, at least one, and their records.
 ListsCore::PlannedSlice ListsCore::plan_slice(std::uint64_t first,
                                               const std::vector<cl_uint>& counts) const {
-    const ListStorage& storage = in_use();
+    const ListStorage& storage = storage_->in_use();
     const std::uint64_t most = storage.most_nodes();
     PlannedSlice slice{{first, 1}, counts[first], counts[first]};
     for (std::uint64_t cell = first + 1; cell < shape_.cells(); ++cell) {
@@ -317,14 +307,14 @@ ListsCore::PlannedSlice ListsCore::plan_slice(std::uint64_t first,
 
 BuildReport ListsCore::build_slices(const std::function<void()>& insert,
                                     const std::function<void(const Slice&)>& read) {
-    refuse_build();
+    require_buildable();
     const auto self = shared_from_this();
-    Build::take_counts(*this);
+    Build::count_before_clear(*this);
     make_ready();
     BuildReport all;
     try {
         storage_->begin_slices();
-        ListStorage& storage = in_use();
+        ListStorage& storage = storage_->in_use();
         const std::vector<cl_uint> counts = count(insert, all);
         const BuildReport counted =
             std::exchange(all, {.attempted = all.attempted, .rejected = all.rejected, .passes = 1});
@@ -358,7 +348,7 @@ BuildReport ListsCore::build_slices(const std::function<void()>& insert,
         fail(false);
         throw;
     }
-    refuse_orphan(self);
+    require_owner(self);
     return all;
 }
 

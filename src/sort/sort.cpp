@@ -162,7 +162,7 @@ ListSorter::Sort ListSorter::sort_of(ListStorage& storage, const SortKey& key) c
 }
 
 cl::Event ListSorter::sort(ListStorage& storage, const SortKey& key, std::uint32_t top_k) {
-    if (storage.cells() == 0 || top_k == 0) return device_->marker();
+    if (storage.cells() == 0 || top_k == 0) return device_->enqueue_marker();
     Sort sort = sort_of(storage, key);
     if (!make_state(sort)) return sort_in_place(storage, key);
     if (select_top_k(sort, top_k)) return std::move(sort.done);
@@ -181,7 +181,7 @@ cl::Event ListSorter::sort(ListStorage& storage, const SortKey& key, std::uint32
 }
 
 cl::Event ListSorter::sort_in_place(ListStorage& storage, const SortKey& key) {
-    if (storage.cells() == 0) return device_->marker();
+    if (storage.cells() == 0) return device_->enqueue_marker();
     Sort sort = sort_of(storage, key);
     sort_in_place(sort);
     return std::move(sort.done);

@@ -31,13 +31,13 @@ std::string ContainerStorage::reason() const {
 
 BuildReport ContainerStorage::measure(const std::function<BuildReport()>& run,
                                       Measurement& measurement) {
-    DeviceState& device = *kernels_.device();
+    DeviceState& device = *kernels_.owner();
     BuildReport report;
     measurement.cost.build_seconds = seconds(device, [&] { report = run(); });
     measurement.stored = report.stored;
 
     std::array<cl_uint, 2> found{};
-    Memory findings(kernels_.device().state(), found.size(), sizeof(cl_uint), "findings");
+    Memory findings(kernels_.owner().state(), found.size(), sizeof(cl_uint), "findings");
     findings.write(found.data(), sizeof found);
     Arguments arguments;
     storage_->add_to(arguments);

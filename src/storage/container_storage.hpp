@@ -26,7 +26,7 @@ public:
     ContainerStorage& operator=(const ContainerStorage&) = delete;
 
     /// The storage in use.
-    [[nodiscard]] ListStorage& get() const { return *storage_; }
+    [[nodiscard]] ListStorage& in_use() const { return *storage_; }
     /// Puts another storage in the place of the one in use, and returns that.
     [[nodiscard]] std::unique_ptr<ListStorage> exchange(std::unique_ptr<ListStorage> other) {
         return std::exchange(storage_, std::move(other));

@@ -277,7 +277,7 @@ PendingRead NodePool::read(Counters& counters) const {
     return shards_.read_later(counters.elements_.data(), shards_.size_bytes());
 }
 
-PendingRead NodePool::read_late(std::array<cl_uint, 2>& words) const {
+PendingRead NodePool::read_late_inserts(std::array<cl_uint, 2>& words) const {
     static_assert(offsetof(cellist_shard, late_high) ==
                   offsetof(cellist_shard, late_low) + sizeof(cl_uint));
     // After the last shard, see cellist_refuse.

@@ -56,7 +56,7 @@ public:
              const Layout& layout);
 
     /// Owns all that the storage keeps.
-    [[nodiscard]] const MemoryOwner& device() const { return device_; }
+    [[nodiscard]] const MemoryOwner& owner() const { return device_; }
     [[nodiscard]] std::uint64_t bytes() const { return device_.bytes(); }
     [[nodiscard]] bool has_budget() const {
         return budget_bytes_ != std::numeric_limits<std::uint64_t>::max();
@@ -136,7 +136,7 @@ public:
     /// Enqueues the reading of the counters: they are there when it has arrived.
     [[nodiscard]] PendingRead read(Counters& counters) const;
     /// Enqueues the reading of the late inserts since the last clear(): low and high word.
-    [[nodiscard]] PendingRead read_late(std::array<cl_uint, 2>& words) const;
+    [[nodiscard]] PendingRead read_late_inserts(std::array<cl_uint, 2>& words) const;
 
 private:
     [[nodiscard]] cl_uint thread_slots_with(std::uint64_t capacity_nodes) const;

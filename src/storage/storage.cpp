@@ -11,7 +11,7 @@ ListStorage::ListStorage(RecordKernels& kernels, const Shape& shape, const Lists
     : kernels_(kernels),
       shape_(shape),
       options_(options),
-      pool_(kernels.device(), shape, options, layout),
+      pool_(kernels.owner(), shape, options, layout),
       view_{},
       slice_{0, shape.cells()} {
     for (std::size_t i = 0; i < std::size(view_.extent); ++i)

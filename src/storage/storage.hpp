@@ -81,10 +81,10 @@ public:
     /// Makes room for such lists in the slice, if the policy is to grow. Throws OverflowError.
     virtual void reserve(std::uint64_t total, std::uint64_t longest) = 0;
 
-    /// Enqueues the reading of the inserts since the last clear() that were refused for there was
-    /// no build: low and high word.
-    [[nodiscard]] PendingRead read_late(std::array<cl_uint, 2>& words) const {
-        return pool_.read_late(words);
+    /// Enqueues the reading of the number of late inserts since the last clear(): low and high
+    /// word.
+    [[nodiscard]] PendingRead read_late_inserts(std::array<cl_uint, 2>& words) const {
+        return pool_.read_late_inserts(words);
     }
 
     /// Adds what CELLIST_LISTS declares.
@@ -140,7 +140,7 @@ protected:
         cellist_findings found{};
     };
     [[nodiscard]] Memory memory_for_findings() const {
-        return {pool_.device().state(), 1, sizeof(cellist_findings), "findings"};
+        return {pool_.owner().state(), 1, sizeof(cellist_findings), "findings"};
     }
     /// Enqueues a validating kernel over all cells: (container, arguments..., findings). What it
     /// found is there when the reading has arrived.

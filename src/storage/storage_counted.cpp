@@ -10,7 +10,7 @@ CountedStorage::CountedStorage(RecordKernels& kernels, const Shape& shape,
     : ListStorage(
           kernels, shape, options, CELLIST_CONTIGUOUS,
           {.node_bytes = kernels.record().size, .head_words_a_cell = 2, .more_head_words = 1}),
-      scan_(pool_.device(), shape.cells(), counts_at()) {
+      scan_(pool_.owner(), shape.cells(), counts_at()) {
     allocate_first(options.capacity_nodes.value_or(0));
     clear();
 }
@@ -56,10 +56,10 @@ std::unique_ptr<Partitions> CountedStorage::partitions_for_pool() const {
     if (options_.overflow != Overflow::grow || slice_.cells != shape_.cells() ||
         capacity_nodes() <= no_place_up_to_)
         return nullptr;
-    const auto plan = Partitions::plan(pool_.device()->info, node_layout(record()).size,
+    const auto plan = Partitions::plan(pool_.owner()->info, node_layout(record()).size,
                                        shape_.cells(), capacity_nodes());
     if (!plan || !pool_.has_room_for(plan->bytes())) return nullptr;
-    return Partitions::make(pool_.device(), *plan);
+    return Partitions::make(pool_.owner(), *plan);
 }
 
 void CountedStorage::begin_pass() {
@@ -242,7 +242,7 @@ std::function<Validation()> CountedStorage::validate() {
     check->findings.memory = memory_for_findings();
     // Where the lists begin that have these counts.
     check->offsets =
-        Memory(pool_.device().state(), shape_.cells() + 1, sizeof(cl_uint), "validation buffer");
+        Memory(pool_.owner().state(), shape_.cells() + 1, sizeof(cl_uint), "validation buffer");
     scan_.sum(pool_.heads().cl(), CELLIST_NONE);
     scan_.write_offsets(pool_.heads().cl(), check->offsets.cl(), capacity_nodes());
     check->done.add(find(check->findings, check->offsets));

@@ -8,7 +8,7 @@ namespace cellist::detail {
 FixedStorage::FixedStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options)
     : ListStorage(kernels, shape, options, CELLIST_FIXED,
                   {.node_bytes = kernels.record().size, .head_words_a_cell = 1}),
-      scan_(pool_.device(), shape.cells(), 0) {
+      scan_(pool_.owner(), shape.cells(), 0) {
     std::uint64_t slots = options.slots.value_or(4);
     if (!options.slots && pool_.refusal(nodes_with(slots))) slots = 0;
     allocate_first(nodes_with(slots));

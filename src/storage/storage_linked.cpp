@@ -67,7 +67,7 @@ std::function<Validation()> LinkedStorage::validate() {
     };
     const auto check = std::make_shared<Check>();
     constexpr cl_uint zero = 0;
-    check->reached = Memory(pool_.device().state(), (pool_.nodes_count() + 31) / 32, sizeof zero,
+    check->reached = Memory(pool_.owner().state(), (pool_.nodes_count() + 31) / 32, sizeof zero,
                             "validation buffer");
     check->findings.memory = memory_for_findings();
     check->reached.fill(&zero, sizeof zero, check->reached.size_bytes());

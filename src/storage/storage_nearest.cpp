@@ -34,8 +34,8 @@ NearestStorage::NearestStorage(RecordKernels& kernels, const Shape& shape,
                    // One row of thresholds: more come with the ties.
                    .head_words_a_cell = std::uint64_t{CELLIST_ROW_LEAST} +
                                         options.storage.nearest_key()->slots + 1}),
-      scan_(pool_.device(), shape.cells(), 0),
-      selection_memory_(pool_.device(), 1, sizeof selection_, "selection") {
+      scan_(pool_.owner(), shape.cells(), 0),
+      selection_memory_(pool_.owner(), 1, sizeof selection_, "selection") {
     const NearestKey& key = *options.storage.nearest_key();
     view_.key_member = member_index(record(), key);
     allocate_first(std::uint64_t{key.slots} * shape.cells());
@@ -78,11 +78,11 @@ void NearestStorage::prepare_threshold_pass() {
                 " take another word of thresholds: " + std::to_string(bytes() + more) +
                 " bytes in all, over the budget of " + std::to_string(options_.budget_bytes) +
                 ": raise budget_bytes");
-        Memory wider(pool_.device(), words, sizeof(cl_uint), "head buffer");
+        Memory wider(pool_.owner(), words, sizeof(cl_uint), "head buffer");
         if (heads.size_bytes() > 0)
             opencl([&] {
-                pool_.device()->ordered_queue().enqueueCopyBuffer(heads.cl(), wider.cl(), 0, 0,
-                                                                  heads.size_bytes());
+                pool_.owner()->ordered_queue().enqueueCopyBuffer(heads.cl(), wider.cl(), 0, 0,
+                                                                 heads.size_bytes());
             });
         pool_.replace_heads(std::move(wider));
     }

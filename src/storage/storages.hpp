@@ -61,7 +61,7 @@ private:
     Counters counting_;     ///< counters of the counting pass
     CellScan::Totals demand_;
     Findings filled_{
-        {pool_.device(), 1, sizeof(cellist_findings), "findings"}};  ///< of the filling pass
+        {pool_.owner(), 1, sizeof(cellist_findings), "findings"}};  ///< of the filling pass
     std::unique_ptr<Partitions> partitions_;  ///< kept between builds; null where these count
     std::uint64_t no_place_up_to_ =
         0;                     ///< this capacity; a thread found none in the partitions for it

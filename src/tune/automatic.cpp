@@ -11,7 +11,7 @@ AutomaticStorage::AutomaticStorage(RecordKernels& kernels, const Shape& shape,
     : ContainerStorage(kernels, nullptr),
       shape_(shape),
       options_(options),
-      tuner_({shape.cells(), kernels.record().size, options}, kernels.device()->profile()) {
+      tuner_({shape.cells(), kernels.record().size, options}, kernels.owner()->profile()) {
     use(tuner_.storage());
 }
 

@@ -8,6 +8,7 @@
 #include <set>
 #include <vector>
 
+#include <cellist/detail/build.hpp>
 #include <cellist/detail/lists_core.hpp>
 #include <cellist/kernel.hpp>
 
@@ -296,14 +297,14 @@ void compare_records(const Device& device, Input& input, const Struct& record,
                   "insert_all_", with_modes);
     const Buffer<cl_uint> device_cells(device, cell_of);
     const Buffer<cl_uchar> device_records(device, std::vector<cl_uchar>(records));
-    const auto build = detail::ListsCore::start_build({&lists}, [&] {
+    const auto build = detail::Build::start({&lists}, [&] {
         detail::Arguments arguments;
         lists.add_to(arguments);
         arguments.add(device_cells);
         arguments.add(device_records.cl());
         insert.enqueue(count, arguments);
     });
-    const BuildReport report = detail::ListsCore::finish(*build).front();
+    const BuildReport report = build->finish().front();
     CELLIST_FUZZ_REQUIRE(report.stored == count && report.attempted == count);
 
     lists.sort({"record" + key.path, 64, descending ? Order::descending : Order::ascending},

@@ -61,14 +61,6 @@ public:
     ListsCore& operator=(const ListsCore&) = delete;
     ~ListsCore();
 
-    /// Enqueues a build of all containers at once: `insert` runs the kernels that fill them.
-    static std::shared_ptr<Build> start_build(std::vector<ListsCore*> containers,
-                                              std::function<void()> insert);
-    /// Completes after the first passes. The build has failed if this throws.
-    [[nodiscard]] static cl::Event marker(Build& build);
-    /// The rest of a build: a report for each container. Blocks.
-    static const std::vector<BuildReport>& finish(Build& build);
-
     /// A build of this container alone, from which Storage::automatic learns. Blocks.
     BuildReport build(const std::function<void()>& insert);
 
@@ -77,8 +69,8 @@ public:
                              const std::function<void(const Slice&)>& read);
 
     void clear();
-    /// Sorts `front` nodes of each list at least.
-    cl::Event sort(const SortKey& key, std::uint32_t front);
+    /// Sorts at least the first `top_k` nodes of each list.
+    cl::Event sort(const SortKey& key, std::uint32_t top_k);
     cl::Event sort_async(const SortKey& key);
     [[nodiscard]] std::function<Validation()> validate() const;
 
@@ -115,7 +107,7 @@ public:
     void add_to(Arguments& arguments) const;
 
     /// Completes when all that was enqueued has.
-    [[nodiscard]] cl::Event marker() const;
+    [[nodiscard]] cl::Event enqueue_marker() const;
     /// Ends a pending build, and empties failed lists. Throws what the build throws, or what still
     /// fails.
     void make_ready() const;
@@ -125,15 +117,14 @@ public:
     /// container: the pool of a build may need the room.
     void release_kept_buffers();
     /// Throws Error if the function that inserts uses the container that it fills.
-    void refuse_while_building() const;
+    void require_not_building() const;
     /// The same, and throws Error if the caller is reading a slice of the container.
-    void refuse_build() const;
+    void require_buildable() const;
 
     /// Whether kernels may insert.
     [[nodiscard]] bool is_building() const { return state_.phase == Phase::building; }
-    /// Enqueues the reading of the number of inserts that were refused outside a build: low and
-    /// high word.
-    [[nodiscard]] PendingRead read_late(std::array<cl_uint, 2>& words) const;
+    /// Enqueues the reading of the number of late inserts: low and high word.
+    [[nodiscard]] PendingRead read_late_inserts(std::array<cl_uint, 2>& words) const;
     /// E.g. "lists of Hit of shape 17 x 3".
     [[nodiscard]] std::string description() const;
 
@@ -149,8 +140,7 @@ public:
 private:
     /// Throws Error if no Lists object refers to the built container any more, because the function
     /// that inserts has replaced it.
-    static void refuse_orphan(const std::shared_ptr<ListsCore>& self);
-    [[nodiscard]] ListStorage& in_use() const;
+    static void require_owner(const std::shared_ptr<ListsCore>& self);
     [[nodiscard]] Range cell_range() const;
     [[nodiscard]] Memory device_lengths(std::uint64_t words) const;
     [[nodiscard]] std::uint64_t most_records() const;

@@ -23,7 +23,7 @@ public:
     [[nodiscard]] static std::shared_ptr<Build> start(std::vector<ListsCore*> containers,
                                                       std::function<void()> insert);
     /// Completes when everything has that was enqueued so far. The build has failed if this throws.
-    [[nodiscard]] cl::Event marker();
+    [[nodiscard]] cl::Event enqueue_marker();
     /// The reports, after all passes. Throws the same every time if the build failed; the
     /// containers are empty then. Blocks.
     const std::vector<BuildReport>& finish();
@@ -32,13 +32,13 @@ public:
     /// Whether finish() can change the lists.
     [[nodiscard]] bool may_change() const;
 
-    /// Call this before a kernel that takes closed lists: tells the build whose function this
-    /// thread runs, if any, which lists they are and which parameter takes their nodes.
-    static void give(const std::weak_ptr<const ListsCore>& lists, const std::string& parameter,
-                     const std::string& kernel);
-    /// Tells the builds whose functions this thread runs that the counters of a container are about
-    /// to be cleared.
-    static void take_counts(const ListsCore& lists);
+    /// Call this before a kernel that takes closed lists. Tells the build whose function this
+    /// thread runs, if any, about the lists and the parameter that takes their nodes.
+    static void note_bystander(const std::weak_ptr<const ListsCore>& lists,
+                               const std::string& parameter, const std::string& kernel);
+    /// Call this before the counters of a container are cleared: the builds whose functions this
+    /// thread runs read its late inserts first.
+    static void count_before_clear(const ListsCore& lists);
 
 private:
     /// Lists that kernels of the build take and that are not part of it. Records that they refuse
@@ -48,7 +48,7 @@ private:
         std::string description;
         std::vector<std::string> uses;  ///< by kernels
         std::uint32_t first_pass = 0;
-        std::array<cl_uint, 2> before{};  ///< inserts that were refused, low and high word
+        std::array<cl_uint, 2> before{};  ///< late inserts, low and high word
         std::array<cl_uint, 2> after{};
         bool counted = false;  ///< `after` is on its way
         ReadbackFence fence;
@@ -58,13 +58,13 @@ private:
     Build(std::vector<ListsCore*> containers, std::function<void()> insert)
         : containers_(std::move(containers)), insert_(std::move(insert)) {}
 
-    void refuse_if_unfit() const;
-    [[nodiscard]] std::vector<std::shared_ptr<ListsCore>> held() const;
+    void require_buildable() const;
+    [[nodiscard]] std::vector<std::shared_ptr<ListsCore>> keep_alive() const;
     void enter(Phase phase);
     void fail() noexcept;
     void enqueue_passes();
     [[nodiscard]] bool review();
-    static void count_refused(Bystander& bystander);
+    static void count_late_inserts(Bystander& bystander);
     void check_bystanders();
 
     std::vector<ListsCore*> containers_;
