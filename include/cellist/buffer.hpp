@@ -70,7 +70,8 @@ public:
         return memory_.write_later(elements.data(), elements.size_bytes());
     }
 
-    /// Sets every element to `value`. Does not block if sizeof(T) is a power of two up to 128.
+    /// Sets every element to `value`. Does not block if sizeof(T) is a power of two up to 128. For
+    /// other sizes, throws MemoryError if the host has no memory for a copy of the elements.
     void fill(const T& value) { memory_.fill(&value, sizeof(T), size() * sizeof(T)); }
 
     /// @private

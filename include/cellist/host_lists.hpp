@@ -17,6 +17,7 @@ namespace cellist {
 template <class T>
 class HostLists {
 public:
+    /// Takes cells() + 1 ascending offsets into `records`, the first of them 0. Checks nothing.
     HostLists(const Shape& shape, std::vector<std::uint64_t> offsets, std::vector<T> records)
         : shape_(shape), offsets_(std::move(offsets)), records_(std::move(records)) {}
 

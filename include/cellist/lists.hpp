@@ -78,7 +78,8 @@ class Lists {
 
 public:
     /// Makes empty lists. Throws MemoryError if the shape or the capacity exceeds a limit of the
-    /// device or the budget, and Error if the options contradict each other.
+    /// device or the budget. Throws Error if the options contradict each other, or if nearest()
+    /// names a member of another record.
     Lists(const Device& device, const Shape& shape, const ListsOptions& options = {})
         : core_("a Lists object",
                 std::make_shared<detail::ListsCore>(device.state(), detail::definitions_of<T>(),
@@ -113,11 +114,14 @@ public:
 
     /// Builds the lists with several kernels. `insert` enqueues them all with Kernel::run. The
     /// build calls it once for each run of the kernels. `insert` cannot build, clear, sort or read
-    /// these lists: each of these throws Error.
+    /// these lists: each of these throws Error. Throws what `insert` throws.
     BuildReport build(std::invocable auto&& insert) { return core_->build(std::ref(insert)); }
 
     /// Starts the same build. The event completes after the first pass. get() runs more passes if
     /// the pool was too small, or throws. Blocks only for an earlier pending build of these lists.
+    ///
+    /// The call itself throws what the first run of the kernels throws, e.g. what `insert` throws.
+    /// get() throws what the review of the passes finds, and what later runs throw.
     ///
     /// Until get(), the lists are incomplete, unless the policy is Overflow::drop. A call that uses
     /// them finishes the build itself: it blocks, and throws what get() would throw. Keep the
@@ -150,8 +154,8 @@ public:
     /// empty. `read` cannot build the lists: that throws Error. At the end all lists are empty.
     ///
     /// Throws OverflowError if a single list does not fit and the policy is not to drop. Throws
-    /// Error if the kernels insert other records than they counted. The counts take 8 bytes per
-    /// cell on the device until the first slice. Blocks.
+    /// Error if the kernels insert other records than they counted. Throws what `insert` or `read`
+    /// throws. The counts take 8 bytes per cell on the device until the first slice. Blocks.
     BuildReport build_slices(std::invocable auto&& insert,
                              std::invocable<const Slice&> auto&& read) {
         return core_->build_slices(std::ref(insert), std::ref(read));
@@ -253,8 +257,9 @@ public:
         return {state->done.event(), [state, shape = shape()] {
                     state->done.wait();
                     state->records.resize(state->offsets.back());
-                    return HostLists<T>(shape, {state->offsets.begin(), state->offsets.end()},
-                                        std::move(state->records));
+                    auto offsets = detail::host_memory<std::uint64_t>(state->offsets.size());
+                    std::copy(state->offsets.begin(), state->offsets.end(), offsets.begin());
+                    return HostLists<T>(shape, std::move(offsets), std::move(state->records));
                 }};
     }
 
@@ -347,7 +352,7 @@ std::array<BuildReport, count> reports(Build& build) {
 /// container, in order. After an exception all of them are empty. Blocks.
 ///
 /// The containers must belong to Devices with one device and context. Throws Error otherwise, and
-/// if a container is named twice. Also throws what Lists::build throws.
+/// if a container is named twice. Also throws what Lists::build and `insert` throw.
 ///
 ///     auto [near, far] = cellist::build([&] { sort_out.run(n, near_lists, far_lists, points); },
 ///                                       near_lists, far_lists);
@@ -358,8 +363,10 @@ std::array<BuildReport, sizeof...(T)> build(std::invocable auto&& insert, Lists<
         *detail::Build::start({&lists.core()...}, std::ref(insert)));
 }
 
-/// Starts the same build and does not block; see Lists::build_async. If one of the containers is
-/// destroyed before get(), the others are empty and get() throws Error.
+/// Starts the same build and does not block; see Lists::build_async. The call itself throws Error
+/// if the containers cannot be built together, and what `insert` throws in its first run. get()
+/// throws the rest. If one of the containers is destroyed before get(), the others are empty and
+/// get() throws Error.
 template <class... T>
     requires(sizeof...(T) > 0)
 [[nodiscard]] Pending<std::array<BuildReport, sizeof...(T)>> build_async(

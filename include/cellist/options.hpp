@@ -85,13 +85,15 @@ private:
 /// by a scalar member, e.g. `nearest(&Hit::depth, 8)`. The report counts the others as dropped. The
 /// remaining members order equal keys, so the result does not depend on timing. The kernels run
 /// twice, and twice more for each further word that decides ties. ListsOptions::overflow,
-/// capacity_nodes and slots do not apply.
+/// capacity_nodes and slots do not apply. The constructor of Lists throws Error if the lists have
+/// another record.
 template <class T, class M>
 [[nodiscard]] StorageOption nearest(M T::*member, std::uint32_t slots) {
     static_assert(detail::Scalar<M>, "the nearest records are found by a scalar member");
     return StorageOption({DeviceType<T>::name(), detail::member_name(member), slots});
 }
 
+/// The options of a container. The defaults are linked lists in a pool that grows.
 struct ListsOptions {
     StorageOption storage = Storage::linked;
     Overflow overflow = Overflow::grow;

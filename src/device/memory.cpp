@@ -75,7 +75,7 @@ void Memory::fill(const void* pattern, std::size_t pattern_bytes, std::size_t by
                                   bytes, 0, nullptr, nullptr));
         return;
     }
-    std::vector<std::byte> copies(bytes);
+    auto copies = host_memory<std::byte>(bytes);
     for (std::size_t at = 0; at < bytes; at += pattern_bytes)
         std::memcpy(copies.data() + at, pattern, std::min(pattern_bytes, bytes - at));
     write(copies.data(), bytes);

@@ -182,7 +182,7 @@ Memory ListsCore::device_lengths(std::uint64_t words) const {
 }
 
 PendingRead ListsCore::read_lengths(std::vector<cl_uint>& lengths) const {
-    lengths.resize(shape_.cells());
+    lengths = host_memory<cl_uint>(shape_.cells());
     return device_lengths(shape_.cells())
         .read_later(lengths.data(), lengths.size() * sizeof(cl_uint));
 }
@@ -236,7 +236,7 @@ void ListsCore::download(ReadbackFence& done, std::vector<cl_uint>& offsets,
     const Memory words = device_offsets();
     const std::uint64_t total = most_records();
     auto* target = static_cast<std::byte*>(allocate(total));
-    offsets.resize(shape_.cells() + 1);
+    offsets = host_memory<cl_uint>(shape_.cells() + 1);
     done.add(words.read_later(offsets.data(), offsets.size() * sizeof(cl_uint)));
 
     const auto copy = [&](std::uint64_t begin, std::uint64_t end, std::uint64_t first,

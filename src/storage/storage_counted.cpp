@@ -211,7 +211,7 @@ std::vector<cl_uint> CountedStorage::counts(BuildReport& report) {
     update(report, counting, 0);
     report.dropped += demand_.sum;
     report.attempted += demand_.sum;
-    std::vector<cl_uint> words(pool_.heads().size_bytes() / sizeof(cl_uint));
+    auto words = host_memory<cl_uint>(pool_.heads().size_bytes() / sizeof(cl_uint));
     pool_.heads().read(words.data(), pool_.heads().size_bytes());
     words.erase(words.begin(), words.begin() + counts_at());
     return words;

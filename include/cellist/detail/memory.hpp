@@ -87,8 +87,8 @@ public:
     cl::Event write_later(const void* source, std::size_t bytes);
     [[nodiscard]] PendingRead read_later(void* target, std::size_t bytes,
                                          std::uint64_t from_byte = 0) const;
-    /// Repeats a pattern over the first `bytes`. Blocks only where the pattern's size is no power
-    /// of two up to 128.
+    /// Repeats a pattern over the first `bytes`. If the pattern's size is not a power of two up to
+    /// 128, blocks, and throws MemoryError if the host has no memory for the copies.
     void fill(const void* pattern, std::size_t pattern_bytes, std::size_t bytes);
 
 private:
