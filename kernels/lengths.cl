@@ -12,7 +12,7 @@ kernel void cellist_lengths(CELLIST_LISTS(CELLIST_RECORD, lists), global uint* l
     uint length = 0;
     // Links in circles end, too.
     cellist_for_each(lists, cell, node) {
-        if (++length == lists_view.capacity_nodes) break;
+        if (++length == lists_view.pool_nodes) break;
     }
     lengths[cell] = length;
 }

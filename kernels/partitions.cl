@@ -68,7 +68,7 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cellist_move_partitio
     const cellist_view lists_view = cellist_view_of(lists);
     const uint partition = get_global_id(0);
     const uint partitions = get_global_size(0);
-    if (starts[0] > lists_view.capacity_nodes) return;
+    if (starts[0] > lists_view.pool_nodes) return;
     global const cellist_cursor* cursors = cellist_cursors(partitioned, thread_slots);
     global const uint* chain = (global const uint*)&cursors[(ulong)thread_slots * partitions];
     global uint* heads = (global uint*)lists_heads;

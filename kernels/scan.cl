@@ -1,18 +1,18 @@
-// Sums and prefix sums of the counts of all cells, in blocks.
+// Sums and prefix sums of the counts of all cells, in tiles.
 //
 //   heads     the counts of the cells, from counts_at on
 //   offsets   cells + 1   out: where lists with these counts begin, none over `capacity`. May be
 //                         heads, even in the place of the counts
-//   sums      blocks    the sum of min(count, limit) over a block, in 64 bits; then, in its place,
-//                       the sum of all blocks before it
-//   hashes    blocks    the sum of a hash of each cell and its count
-//   maxima    blocks    the largest count of a block
+//   sums      tiles     the sum of min(count, limit) over a tile, in 64 bits; then, in its place,
+//                       the sum of all tiles before it
+//   hashes    tiles     the sum of a hash of each cell and its count
+//   maxima    tiles     the largest count of a tile
 //   totals    3         out: the sum of min(count, limit) over all cells, the largest count, and
 //                       the sum of the hashes
 //
-// A work-group of CELLIST_SCAN_GROUP items has a block of CELLIST_SCAN_GROUP * CELLIST_SCAN_CELLS
-// cells, and there are cells / that + 1 blocks. One work-group sums up the blocks. Barriers stand
-// in uniform control flow.
+// A work-group of CELLIST_SCAN_GROUP items has a tile of CELLIST_SCAN_GROUP * CELLIST_SCAN_CELLS
+// cells, and there are cells / that + 1 tiles. One work-group sums up the tiles. Barriers stand in
+// uniform control flow.
 
 // The host defines CELLIST_SCAN_GROUP, the work-items of a group; a power of two.
 // Cells of a work-item. As in cell_scan.cpp.
@@ -27,7 +27,7 @@ static inline ulong cellist_count_hash(uint cell, uint count) {
     return hash ^ hash >> 33;
 }
 
-kernel __attribute__((reqd_work_group_size(CELLIST_SCAN_GROUP, 1, 1))) void cellist_block_sums(
+kernel __attribute__((reqd_work_group_size(CELLIST_SCAN_GROUP, 1, 1))) void cellist_tile_sums(
     global const uint* heads, uint counts_at, uint cells, uint limit, global ulong* sums,
     global ulong* hashes, global uint* maxima) {
     local ulong group_sums[CELLIST_SCAN_GROUP];
@@ -79,8 +79,8 @@ static inline ulong cellist_group_scan(local ulong* sums, ulong value) {
 }
 
 // One work-group.
-kernel __attribute__((reqd_work_group_size(CELLIST_SCAN_GROUP, 1, 1))) void cellist_block_starts(
-    global ulong* sums, global const ulong* hashes, global const uint* maxima, uint blocks,
+kernel __attribute__((reqd_work_group_size(CELLIST_SCAN_GROUP, 1, 1))) void cellist_tile_starts(
+    global ulong* sums, global const ulong* hashes, global const uint* maxima, uint tiles,
     global ulong* totals) {
     local ulong group_sums[CELLIST_SCAN_GROUP];
     local ulong group_hashes[CELLIST_SCAN_GROUP];
@@ -89,14 +89,14 @@ kernel __attribute__((reqd_work_group_size(CELLIST_SCAN_GROUP, 1, 1))) void cell
     ulong before = 0;
     ulong hash = 0;
     uint maximum = 0;
-    for (uint first = 0; first < blocks; first += CELLIST_SCAN_GROUP) {
-        const uint block = first + item;
-        const ulong own = block < blocks ? sums[block] : 0;
+    for (uint first = 0; first < tiles; first += CELLIST_SCAN_GROUP) {
+        const uint tile = first + item;
+        const ulong own = tile < tiles ? sums[tile] : 0;
         const ulong up_to = cellist_group_scan(group_sums, own);
-        if (block < blocks) {
-            sums[block] = before + up_to - own;
-            hash += hashes[block];
-            maximum = max(maximum, maxima[block]);
+        if (tile < tiles) {
+            sums[tile] = before + up_to - own;
+            hash += hashes[tile];
+            maximum = max(maximum, maxima[tile]);
         }
         before += group_sums[CELLIST_SCAN_GROUP - 1];
         barrier(CLK_LOCAL_MEM_FENCE);
@@ -114,7 +114,7 @@ kernel __attribute__((reqd_work_group_size(CELLIST_SCAN_GROUP, 1, 1))) void cell
     totals[2] = hash;
 }
 
-kernel __attribute__((reqd_work_group_size(CELLIST_SCAN_GROUP, 1, 1))) void cellist_block_offsets(
+kernel __attribute__((reqd_work_group_size(CELLIST_SCAN_GROUP, 1, 1))) void cellist_tile_offsets(
     global const uint* heads, uint counts_at, uint cells, global const ulong* sums, uint capacity,
     global uint* offsets) {
     local ulong group_sums[CELLIST_SCAN_GROUP];

@@ -112,7 +112,7 @@ static inline int cellist_sort_is_broken(volatile global uint* heads, const cell
                                          uint cell) {
     const uint begin = cellist_begin(heads, view, cell);
     const uint end = cellist_end(heads, view, cell);
-    return begin != end && (begin > end || end > view.capacity_nodes);
+    return begin != end && (begin > end || end > view.pool_nodes);
 }
 
 // Nodes of a list; none where the offsets are impossible.

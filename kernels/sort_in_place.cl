@@ -28,7 +28,7 @@ static inline uint cellist_sort_merge_lists(CELLIST_LISTS(CELLIST_RECORD, lists)
         last = least;
 
         const uint next = lists_nodes[least].next;
-        if (next >= lists_view.capacity_nodes) break;
+        if (next >= lists_view.pool_nodes) break;
         if (b_first)
             b = next, y = cellist_sort_key(&cellist_get(lists, b));
         else
@@ -44,8 +44,7 @@ static inline void cellist_sort_cell(CELLIST_LISTS(CELLIST_RECORD, lists), uint 
     uint pending[32];
     uint used = 0;
     uint node = lists_heads[cell];
-    for (uint taken = 0; node < lists_view.capacity_nodes && taken < lists_view.capacity_nodes;
-         ++taken) {
+    for (uint taken = 0; node < lists_view.pool_nodes && taken < lists_view.pool_nodes; ++taken) {
         const uint next = lists_nodes[node].next;
         lists_nodes[node].next = CELLIST_NONE;
         uint level = 0;

@@ -8,7 +8,7 @@
 //   longer    longer_end   out: cells with longer lists, as many as state->longer[stage] says
 //   state     1        in and out: the nodes of the lists, how many lists are broken, and more
 //   heads     cells    out: heads of the lists that move
-//   nodes     capacity_nodes   out: their nodes
+//   nodes     pool_nodes       out: their nodes
 //
 // CELLIST_SORT_ITEMS work-items sort CELLIST_SORT_LISTS lists, and CELLIST_SORT_TEAM of them one
 // list. Barriers stand in uniform control flow, and the range is padded to whole work-groups.
@@ -65,7 +65,7 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
         uint more = 0;
         for (uint i = item; i < own; i += CELLIST_SORT_ITEMS) {
             const uint node = next[i];
-            if (node >= lists_view.capacity_nodes) continue;
+            if (node >= lists_view.pool_nodes) continue;
             index[i * CELLIST_SORT_STRIDE + step] = node;
             lengths[i] = step + 1;
             next[i] = lists_nodes[node].next;
@@ -75,7 +75,7 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
     }
     cellist_sort_barrier();
     for (uint i = item; i < own; i += CELLIST_SORT_ITEMS) {
-        if (next[i] < lists_view.capacity_nodes) {
+        if (next[i] < lists_view.pool_nodes) {
             cellist_sort_leave(longer, longer_end, stage, CELLIST_SORT_CELL(i), state);
             lengths[i] = CELLIST_NONE;
         } else {
@@ -87,7 +87,7 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
     if (item == 0) {
         base = atomic_add(&state->nodes, total);
         // More nodes than there are: lists share some of them.
-        if (total > lists_view.capacity_nodes || base > lists_view.capacity_nodes - total) {
+        if (total > lists_view.pool_nodes || base > lists_view.pool_nodes - total) {
             atomic_inc(&state->broken);
             total = CELLIST_NONE;
         }

@@ -15,10 +15,10 @@
 //   long_lists    lists                where each list is
 //   chunk_owners  chunks_max           the list of each chunk
 //   heads         cells                heads of the lists that move
-//   nodes         capacity_nodes       their nodes
-//   from, to      capacity_nodes       the pools; every second pass goes from the pool that holds
+//   nodes         pool_nodes           their nodes
+//   from, to      pool_nodes           the pools; every second pass goes from the pool that holds
 //                                      the lists to the other
-//   keys          capacity_nodes       if CELLIST_SORT_KEEPS_KEYS is not 0: the key of each node of
+//   keys          pool_nodes           if CELLIST_SORT_KEEPS_KEYS is not 0: the key of each node of
 //                                      the lists. keys_from and keys_to go with the pools.
 //                                      Work-items that merge parts of a list must agree on where
 //                                      the parts end, so each key is computed once
@@ -34,7 +34,7 @@
 #if CELLIST_MODES == CELLIST_LINKED
 
 static inline uint cellist_sort_splitters(const cellist_view view) {
-    return view.capacity_nodes >> CELLIST_SORT_SEGMENT_BITS;
+    return view.pool_nodes >> CELLIST_SORT_SEGMENT_BITS;
 }
 
 static inline uint cellist_sort_splitter(uint segment) {
@@ -76,7 +76,7 @@ kernel void cellist_sort_measure(CELLIST_LISTS(CELLIST_RECORD, lists), global co
         uint more = 0;
         for (uint i = 0; i < own; ++i) {
             const uint node = next[i];
-            if (node >= lists_view.capacity_nodes || cellist_sort_is_splitter(lists_view, node))
+            if (node >= lists_view.pool_nodes || cellist_sort_is_splitter(lists_view, node))
                 continue;
             next[i] = lists_nodes[node].next;
             ++lengths[i];
@@ -86,7 +86,7 @@ kernel void cellist_sort_measure(CELLIST_LISTS(CELLIST_RECORD, lists), global co
     }
     for (uint i = 0; i < own; ++i) {
         uint after = CELLIST_NONE;
-        if (next[i] < lists_view.capacity_nodes)
+        if (next[i] < lists_view.pool_nodes)
             after = cellist_sort_is_splitter(lists_view, next[i])
                         ? next[i] >> CELLIST_SORT_SEGMENT_BITS
                         : CELLIST_SORT_BROKEN;
@@ -106,7 +106,7 @@ static inline uint cellist_sort_chain(const cellist_view view, uint list,
         const uint2 own = segments[segment];
         offsets[segment] = (uint2)(list, length);
         length += own.x;
-        if (length > view.capacity_nodes || own.y == CELLIST_SORT_BROKEN) return 0;
+        if (length > view.pool_nodes || own.y == CELLIST_SORT_BROKEN) return 0;
         if (own.y == CELLIST_NONE) return length;
         segment = own.y;
     }
@@ -141,8 +141,8 @@ kernel void cellist_sort_assign(CELLIST_LISTS(CELLIST_RECORD, lists), global con
 #endif
     const uint chunks = (list.length + (CELLIST_SORT_CHUNK_SIZE - 1)) / CELLIST_SORT_CHUNK_SIZE;
     list.chunk = atomic_add(&state->chunks, chunks);
-    if (list.length == 0 || list.length > lists_view.capacity_nodes ||
-        list.first > lists_view.capacity_nodes - list.length || list.chunk > chunks_max - chunks) {
+    if (list.length == 0 || list.length > lists_view.pool_nodes ||
+        list.first > lists_view.pool_nodes - list.length || list.chunk > chunks_max - chunks) {
         atomic_inc(&state->broken);
         list.length = 0;
     } else {
@@ -187,7 +187,7 @@ kernel void cellist_sort_gather(CELLIST_LISTS(CELLIST_RECORD, lists), global con
         uint more = 0;
         for (uint i = 0; i < own; ++i) {
             const uint node = next[i];
-            if (node >= lists_view.capacity_nodes || at[i] == ends[i]) continue;
+            if (node >= lists_view.pool_nodes || at[i] == ends[i]) continue;
             next[i] = lists_nodes[node].next;
             cellist_sort_store(nodes, at[i], lasts[i],
                                (global const cellist_sort_node*)lists_nodes + node);
@@ -205,7 +205,7 @@ kernel void cellist_sort_allocate(CELLIST_LISTS(CELLIST_RECORD, lists), uint sto
     const uint i = get_global_id(0);
     const uint count = 1u << lists_view.shard_bits;
     cellist_view view = lists_view;
-    view.capacity_nodes = stored;
+    view.pool_nodes = stored;
     if (i < count) lists_shards[i].allocated = cellist_shard_nodes(view, i);
     if (i < lists_view.thread_slots) {
         volatile global cellist_thread_block* block = &cellist_thread_blocks(lists_shards, view)[i];

@@ -1,7 +1,7 @@
 // Brings the top k records of every list, those that come first, to its first nodes, in order; the
 // others follow in any order. See sort.cl. The whole list is visited.
 //
-//   count       records that go to the first nodes of each list, at most CELLIST_SORT_TOP_K
+//   top_k       records that go to the first nodes of each list, at most CELLIST_SORT_TOP_K
 //   length_max  lists of more nodes are left as they are, and counted in state->longer[0]
 //   state       also counts the nodes, and the lists that end outside of the pool
 //
@@ -19,22 +19,22 @@ typedef struct cellist_sort_top {
 
 // Looks at the next node of a list, the `number`-th.
 static inline void cellist_sort_take(CELLIST_LISTS(CELLIST_RECORD, lists), cellist_sort_top* top,
-                                     uint count, uint number, uint node) {
+                                     uint top_k, uint number, uint node) {
     const cellist_sort_bits key = cellist_sort_key(&cellist_get(lists, node));
-    if (number < count) top->targets[number] = node;
-    uint at = min(number, count);
+    if (number < top_k) top->targets[number] = node;
+    uint at = min(number, top_k);
     for (; at > 0; --at) {
         if (key > top->keys[at - 1]) break;
         if (key == top->keys[at - 1] &&
             !cellist_record_before(&cellist_get(lists, node),
                                    &cellist_get(lists, top->nodes[at - 1]), 0))
             break;
-        if (at == count) continue;
+        if (at == top_k) continue;
         top->keys[at] = top->keys[at - 1];
         top->nodes[at] = top->nodes[at - 1];
         top->numbers[at] = top->numbers[at - 1];
     }
-    if (at == count) return;
+    if (at == top_k) return;
     top->keys[at] = key;
     top->nodes[at] = node;
     top->numbers[at] = number;
@@ -59,7 +59,7 @@ static inline void cellist_sort_move(CELLIST_LISTS(CELLIST_RECORD, lists),
     for (uint i = 0; i < count; ++i) cellist_get(lists, top->targets[i]) = records[i];
 }
 
-kernel void cellist_sort_partial(CELLIST_LISTS(CELLIST_RECORD, lists), uint count, uint length_max,
+kernel void cellist_sort_partial(CELLIST_LISTS(CELLIST_RECORD, lists), uint top_k, uint length_max,
                                  volatile global cellist_sort_state* state) {
     const cellist_view lists_view = cellist_view_of(lists);
     const ulong begin = (ulong)get_global_id(0) * CELLIST_SORT_LISTS;
@@ -85,13 +85,13 @@ kernel void cellist_sort_partial(CELLIST_LISTS(CELLIST_RECORD, lists), uint coun
         uint more = 0;
         for (uint i = 0; i < own; ++i) {
             const uint node = next[i];
-            if (node == ends[i] || node >= lists_view.capacity_nodes) continue;
+            if (node == ends[i] || node >= lists_view.pool_nodes) continue;
 #if CELLIST_MODES == CELLIST_LINKED
             next[i] = lists_nodes[node].next;
 #else
             ++next[i];
 #endif
-            cellist_sort_take(CELLIST_PASS(lists), &tops[i], count, step, node);
+            cellist_sort_take(CELLIST_PASS(lists), &tops[i], top_k, step, node);
             lengths[i] = step + 1;
             more = 1;
         }
@@ -102,8 +102,8 @@ kernel void cellist_sort_partial(CELLIST_LISTS(CELLIST_RECORD, lists), uint coun
     if (nodes > 0) atomic_add(&state->nodes, nodes);
     for (uint i = 0; i < own; ++i) {
         if (next[i] != ends[i])
-            atomic_inc(next[i] < lists_view.capacity_nodes ? &state->longer[0] : &state->broken);
+            atomic_inc(next[i] < lists_view.pool_nodes ? &state->longer[0] : &state->broken);
         else
-            cellist_sort_move(CELLIST_PASS(lists), &tops[i], min(lengths[i], count));
+            cellist_sort_move(CELLIST_PASS(lists), &tops[i], min(lengths[i], top_k));
     }
 }

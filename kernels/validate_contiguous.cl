@@ -19,7 +19,7 @@ kernel void cellist_validate_contiguous(CELLIST_LISTS(CELLIST_RECORD, lists),
     const uint inserted = lists_heads[(ulong)lists_view.cells + 1 + cell];
     // The first list begins with the pool.
     const int is_possible =
-        begin <= end && end <= lists_view.capacity_nodes && (cell > 0 || begin == 0);
+        begin <= end && end <= lists_view.pool_nodes && (cell > 0 || begin == 0);
     if (!is_possible || begin != offsets[cell] || end != offsets[(ulong)cell + 1]) {
         atomic_inc(&findings->broken);
         atomic_max(&findings->bad_cell_from_end, CELLIST_NONE - cell);

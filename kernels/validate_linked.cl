@@ -1,7 +1,7 @@
 // Checks the links of every list: each allocated node is reached from exactly one head, exactly
 // once.
 //
-//   reached   (capacity_nodes + 31) / 32   in: 0; a bit a node: some link leads to it
+//   reached   (pool_nodes + 31) / 32       in: 0; a bit a node: some link leads to it
 //   findings  1                            in: 0; out: links to nodes
 //                                          never allocated, links to nodes reached before, nodes
 //                                          reached
@@ -20,7 +20,7 @@ kernel void cellist_validate_linked(CELLIST_LISTS(CELLIST_RECORD, lists),
     uint length = 0;
     int bad = 0;
     uint node = lists_heads[cell];
-    for (uint step = 0; step <= lists_view.capacity_nodes && node != CELLIST_NONE; ++step) {
+    for (uint step = 0; step <= lists_view.pool_nodes && node != CELLIST_NONE; ++step) {
         if (!cellist_is_allocated(lists_shards, lists_view, node)) {
             atomic_inc(&findings->broken);
             bad = 1;

@@ -41,7 +41,7 @@ kernel void owners(CELLIST_LISTS(Item, lists), global uint* owner, global uint* 
     for (uint shard = 0; shard < (1u << lists_view.shard_bits); ++shard)
         for (uint n = 0; n < cellist_shard_nodes(lists_view, shard); ++n) {
             const uint node = cellist_shard_address(lists_view, shard, n);
-            if (node >= lists_view.capacity_nodes || owner[node] != CELLIST_NONE) ++*repeated;
+            if (node >= lists_view.pool_nodes || owner[node] != CELLIST_NONE) ++*repeated;
             else owner[node] = shard;
         }
 }

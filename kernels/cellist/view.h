@@ -56,15 +56,15 @@
 
 // Passed to kernels by value.
 typedef struct cellist_view {
-    CELLIST_UINT extent[4];       // cells along x, y, z, w; missing dimensions are 1
-    CELLIST_UINT cells;           // product of the extents
-    CELLIST_UINT capacity_nodes;  // nodes in the pool, those of per-thread blocks included
-    CELLIST_UINT shard_bits;      // the counters have 2^shard_bits shards
-    CELLIST_UINT mode;            // one of the modes above
-    CELLIST_UINT slots;           // nodes of each cell in fixed.clh and nearest.clh
-    CELLIST_UINT first_cell;      // of the cells that have lists now: 0 but in a build in slices
-    CELLIST_UINT open_cells;      // cells from the first on that take inserts: 0 outside of a build
-    CELLIST_UINT key_member;      // of the record: the key of nearest.clh
+    CELLIST_UINT extent[4];   // cells along x, y, z, w; missing dimensions are 1
+    CELLIST_UINT cells;       // product of the extents
+    CELLIST_UINT pool_nodes;  // nodes in the pool, those of per-thread blocks included
+    CELLIST_UINT shard_bits;  // the counters have 2^shard_bits shards
+    CELLIST_UINT mode;        // one of the modes above
+    CELLIST_UINT slots;       // nodes of each cell in fixed.clh and nearest.clh
+    CELLIST_UINT first_cell;  // of the cells that have lists now: 0 but in a build in slices
+    CELLIST_UINT open_cells;  // cells from the first on that take inserts: 0 outside of a build
+    CELLIST_UINT key_member;  // of the record: the key of nearest.clh
     CELLIST_UINT threshold_words;  // words of the key that have thresholds
     CELLIST_UINT thread_slots;     // 0, or a power of two from 8 on
     CELLIST_UINT partition_bits;   // cells of a partition in mode PARTITIONED: 2^partition_bits

@@ -29,12 +29,12 @@ Kernel scan_kernel(const std::shared_ptr<DeviceState>& device, cl_uint group, co
             {}};
 }
 
-std::uint64_t blocks_of(std::uint64_t cells, cl_uint group) {
+std::uint64_t tiles_of(std::uint64_t cells, cl_uint group) {
     return cells / (group * cells_of_item) + 1;
 }
 
-Range blocks_range(std::uint64_t blocks, std::size_t group) {
-    Range range(blocks * group);
+Range tiles_range(std::uint64_t tiles, std::size_t group) {
+    Range range(tiles * group);
     range.local = {group, 1, 1};
     return range;
 }
@@ -45,25 +45,25 @@ CellScan::CellScan(const MemoryOwner& device, std::uint64_t cells, cl_uint count
     : group_(group_of(device->info)),
       cells_(static_cast<cl_uint>(cells)),
       counts_at_(counts_at),
-      blocks_(blocks_of(cells, group_)),
-      block_sums_(scan_kernel(device, group_, "cellist_block_sums")),
-      block_starts_(scan_kernel(device, group_, "cellist_block_starts")),
-      block_offsets_(scan_kernel(device, group_, "cellist_block_offsets")),
-      sums_(device, blocks_, sizeof(cl_ulong), "sums"),
-      hashes_(device, blocks_, sizeof(cl_ulong), "hashes"),
-      maxima_(device, blocks_, sizeof(cl_uint), "maxima"),
+      tiles_(tiles_of(cells, group_)),
+      tile_sums_(scan_kernel(device, group_, "cellist_tile_sums")),
+      tile_starts_(scan_kernel(device, group_, "cellist_tile_starts")),
+      tile_offsets_(scan_kernel(device, group_, "cellist_tile_offsets")),
+      sums_(device, tiles_, sizeof(cl_ulong), "sums"),
+      hashes_(device, tiles_, sizeof(cl_ulong), "hashes"),
+      maxima_(device, tiles_, sizeof(cl_uint), "maxima"),
       totals_(device, 1, sizeof(Totals), "totals") {}
 
 std::uint64_t CellScan::bytes_for(const DeviceInfo& device, std::uint64_t cells) {
-    return blocks_of(cells, group_of(device)) * (2 * sizeof(cl_ulong) + sizeof(cl_uint)) +
+    return tiles_of(cells, group_of(device)) * (2 * sizeof(cl_ulong) + sizeof(cl_uint)) +
            sizeof(Totals);
 }
 
 void CellScan::sum(const cl::Buffer& heads, cl_uint limit) {
-    block_sums_.run(blocks_range(blocks_, group_), heads, counts_at_, cells_, limit, sums_.cl(),
-                    hashes_.cl(), maxima_.cl());
-    block_starts_.run(blocks_range(1, group_), sums_.cl(), hashes_.cl(), maxima_.cl(),
-                      static_cast<cl_uint>(blocks_), totals_.cl());
+    tile_sums_.run(tiles_range(tiles_, group_), heads, counts_at_, cells_, limit, sums_.cl(),
+                   hashes_.cl(), maxima_.cl());
+    tile_starts_.run(tiles_range(1, group_), sums_.cl(), hashes_.cl(), maxima_.cl(),
+                     static_cast<cl_uint>(tiles_), totals_.cl());
 }
 
 PendingRead CellScan::read_later(Totals& totals) const {
@@ -72,8 +72,8 @@ PendingRead CellScan::read_later(Totals& totals) const {
 
 void CellScan::write_offsets(const cl::Buffer& heads, const cl::Buffer& offsets,
                              std::uint64_t capacity_nodes) {
-    block_offsets_.run(blocks_range(blocks_, group_), heads, counts_at_, cells_, sums_.cl(),
-                       static_cast<cl_uint>(capacity_nodes), offsets);
+    tile_offsets_.run(tiles_range(tiles_, group_), heads, counts_at_, cells_, sums_.cl(),
+                      static_cast<cl_uint>(capacity_nodes), offsets);
 }
 
 }  // namespace cellist::detail

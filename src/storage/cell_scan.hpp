@@ -10,7 +10,7 @@
 namespace cellist::detail {
 
 /// Sums the counts of all cells, and computes where lists of these lengths start. The counts are
-/// words of a head buffer, from `counts_at` on. No call blocks.
+/// words of a head buffer, from `counts_at` on. No call tiles.
 class CellScan {
 public:
     CellScan(const MemoryOwner& device, std::uint64_t cells, cl_uint counts_at);
@@ -37,10 +37,10 @@ private:
     cl_uint group_;  ///< work-items
     cl_uint cells_;
     cl_uint counts_at_;
-    std::uint64_t blocks_;
-    Kernel block_sums_;
-    Kernel block_starts_;
-    Kernel block_offsets_;
+    std::uint64_t tiles_;
+    Kernel tile_sums_;
+    Kernel tile_starts_;
+    Kernel tile_offsets_;
     Memory sums_;
     Memory hashes_;
     Memory maxima_;

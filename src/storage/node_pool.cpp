@@ -240,7 +240,7 @@ void NodePool::swap_back_buffer() noexcept {
 }
 
 void NodePool::describe(cellist_view& view) const {
-    view.capacity_nodes = static_cast<cl_uint>(nodes_count());
+    view.pool_nodes = static_cast<cl_uint>(nodes_count());
     view.shard_bits = shard_bits_;
     view.thread_slots = thread_slots_;
 }

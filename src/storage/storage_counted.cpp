@@ -24,7 +24,7 @@ void CountedStorage::add_to(Arguments& arguments, Inserts inserts) const {
     if (view_.mode != CELLIST_PARTITIONED) return ListStorage::add_to(arguments, inserts);
     const Partitions::Plan& plan = partitions_->plan();
     cellist_view partitioned = view(inserts);
-    partitioned.capacity_nodes = static_cast<cl_uint>(plan.nodes);
+    partitioned.pool_nodes = static_cast<cl_uint>(plan.nodes);
     // Blocks from one counter: those that are being filled lie close together.
     partitioned.shard_bits = 0;
     partitioned.thread_slots = plan.thread_slots;
