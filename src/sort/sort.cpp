@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <numeric>
+#include <utility>
 
 #include "cellist_kernels.hpp"
 
@@ -175,7 +176,7 @@ cl::Event ListSorter::sort(ListStorage& storage, const SortKey& key, std::uint32
         sort_long(sort);
     } else {
         check_nodes(sort);
-        if (sort.linked) adopt(sort);
+        if (sort.linked) swap_pools(sort);
     }
     return std::move(sort.done);
 }
@@ -187,10 +188,16 @@ cl::Event ListSorter::sort_in_place(ListStorage& storage, const SortKey& key) {
     return std::move(sort.done);
 }
 
+/// The buffer that names the cells of the lists that are left, and 1; without such a buffer, all
+/// lists are left, and any buffer and 0 take its place.
+std::pair<const cl::Buffer&, cl_uint> ListSorter::cells_of(const Sort& sort) {
+    if (sort.cells != nullptr) return {sort.cells->cl(), 1};
+    return {sort.storage.pool().heads().cl(), 0};
+}
+
 /// Sorts the lists that are left without more memory.
 void ListSorter::sort_in_place(Sort& sort) {
-    const cl_uint listed = sort.cells != nullptr ? 1 : 0;
-    const cl::Buffer& cells = (listed ? *sort.cells : sort.storage.pool().heads()).cl();
+    const auto [cells, listed] = cells_of(sort);
     const auto count = static_cast<cl_uint>(sort.count);
     kernel({"sort_in_place.cl", kernels::sort_in_place_cl}, "cellist_sort_in_place", sort,
            sort.plan.of_long_lists())
@@ -202,7 +209,8 @@ void ListSorter::sort_in_place(Sort& sort) {
 /// sorted: because that takes less time, or there are long lists, or k is more than a work-item
 /// keeps.
 bool ListSorter::select_top_k(Sort& sort, std::uint32_t top_k) {
-    if (!sort.plan.top_k_pays(top_k, sort.storage.stored() / sort.storage.cells())) return false;
+    if (!sort.plan.top_k_is_faster(top_k, sort.storage.stored() / sort.storage.cells()))
+        return false;
     const SortTuning tuning = sort.plan.of_top_k(top_k);
     clear_state();
     kernel({"sort_partial.cl", kernels::sort_partial_cl}, "cellist_sort_partial", sort, tuning)
@@ -256,10 +264,9 @@ void ListSorter::sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage)
     Memory& longer = cells_[stage % 2];
     if (longer.size_bytes() < most * sizeof(cl_uint))
         longer = Memory(device_, most, sizeof(cl_uint), "cells with long lists");
-    const cl_uint listed = sort.cells != nullptr ? 1 : 0;
-    Arguments arguments = arguments_of(storage, listed ? sort.cells->cl() : state_.cl(), listed,
-                                       static_cast<cl_uint>(sort.count), longer.cl(),
-                                       static_cast<cl_uint>(most), stage, state_.cl());
+    const auto [cells, listed] = cells_of(sort);
+    Arguments arguments = arguments_of(storage, cells, listed, static_cast<cl_uint>(sort.count),
+                                       longer.cl(), static_cast<cl_uint>(most), stage, state_.cl());
     if (sort.linked) {
         const NodePool::BackBuffer* back_buffer = sort.storage.pool().back_buffer();
         arguments.add(back_buffer->heads.cl());
@@ -309,7 +316,7 @@ void ListSorter::sort_long(Sort& sort) {
                               back_buffer->nodes.cl()));
     read_state(sort);
     check_nodes(sort);
-    if (sort.linked) adopt(sort);
+    if (sort.linked) swap_pools(sort);
     merge(sort, long_lists, chunk_owners, *keys);
 }
 
@@ -364,8 +371,8 @@ void ListSorter::run_long(Sort& sort, const char* name, const Range& range,
         .enqueue(range, arguments, &sort.done);
 }
 
-/// Puts the lists that have moved in the place of those that have not.
-void ListSorter::adopt(Sort& sort) {
+/// Swaps the pools: all lists have moved to the back buffer.
+void ListSorter::swap_pools(Sort& sort) {
     ListStorage& storage = sort.storage;
     if (storage.stored() < storage.pool().nodes_count())
         run_long(sort, "cellist_sort_allocate", Range::padded(storage.pool().shards_count()),

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include <cellist/detail/lists_core.hpp>
 #include <cellist/detail/memory.hpp>
@@ -49,6 +50,7 @@ private:
 
     [[nodiscard]] Sort sort_of(ListStorage& storage, const SortKey& key) const;
     bool select_top_k(Sort& sort, std::uint32_t top_k);
+    [[nodiscard]] static std::pair<const cl::Buffer&, cl_uint> cells_of(const Sort& sort);
     void sort_in_place(Sort& sort);
     void sort_classes(Sort& sort);
     void sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage);
@@ -63,7 +65,7 @@ private:
     [[nodiscard]] std::optional<Keys> keys_of(const Sort& sort) const;
     [[nodiscard]] bool has_room_for(const Sort& sort, std::uint64_t more_bytes) const;
     void run_long(Sort& sort, const char* name, const Range& range, const Arguments& arguments);
-    void adopt(Sort& sort);
+    void swap_pools(Sort& sort);
     [[nodiscard]] std::size_t first_class(const Sort& sort) const;
     [[nodiscard]] std::uint64_t most_left(const Sort& sort, const SortTuning& tuning) const;
 

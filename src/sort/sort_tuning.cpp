@@ -62,7 +62,7 @@ SortTuning SortPlan::of_long_lists() const {
 // On an EPYC under PoCL, the first 8 of 64 nodes are found in 0.8 times as long as the lists are
 // sorted, 8 of 256 in a third, 8 of 4,096 in a sixth. On an H200, where short lists are sorted in
 // local memory, it takes 0.8 to 5 times as long for lists of 64, and half as long for 16 of 1,024.
-bool SortPlan::top_k_pays(std::uint32_t top_k, std::uint64_t mean) const {
+bool SortPlan::top_k_is_faster(std::uint32_t top_k, std::uint64_t mean) const {
     if (top_k > top_k_max || of_top_k(top_k).top_k * record_bytes_ > top_k_bytes_max) return false;
     return mean >= (in_groups_ ? 512 : 8 * std::uint64_t{top_k});
 }

@@ -38,7 +38,7 @@ public:
     [[nodiscard]] SortTuning of_long_lists() const;
 
     /// Whether finding the top k of lists of `mean` nodes takes less time than sorting the lists.
-    [[nodiscard]] bool top_k_pays(std::uint32_t top_k, std::uint64_t mean) const;
+    [[nodiscard]] bool top_k_is_faster(std::uint32_t top_k, std::uint64_t mean) const;
     [[nodiscard]] SortTuning of_top_k(std::uint32_t top_k) const;
 
 private:
