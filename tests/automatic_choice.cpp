@@ -221,7 +221,8 @@ TEST_CASE("an excluded storage is left, for ever or until the next trial") {
         StorageTuner tuner(container(), {});
         while (tuner.storage() == Storage::linked)
             tuner.measured({best_counted.linked, records, 20});
-        REQUIRE(tuner.exclude(Storage::counted, "left: no", true) == Storage::linked);
+        REQUIRE(tuner.exclude(Storage::counted, "left: no", StorageTuner::Exclusion::permanent) ==
+                Storage::linked);
         REQUIRE(tuner.storage() == Storage::fixed);
         try_all(tuner, best_counted);
         REQUIRE(tuner.storage() == Storage::fixed);
@@ -250,7 +251,8 @@ TEST_CASE("an excluded storage is left, for ever or until the next trial") {
     }
     SECTION("all of them: the next build starts anew") {
         StorageTuner tuner(container(), {});
-        REQUIRE(tuner.exclude(Storage::counted, "no", true) == Storage::linked);
+        REQUIRE(tuner.exclude(Storage::counted, "no", StorageTuner::Exclusion::permanent) ==
+                Storage::linked);
         REQUIRE(tuner.exclude(Storage::linked, "no") == std::nullopt);
         REQUIRE(tuner.on_trial());
         REQUIRE(tuner.storage() == Storage::linked);

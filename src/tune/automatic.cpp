@@ -46,8 +46,9 @@ void AutomaticStorage::start() {
 
 /// Excludes the storage in use from the choice, and starts the build anew in another. False if
 /// there is none.
-bool AutomaticStorage::replace(const BuildReport& report, const char* why, bool for_ever) {
-    const std::optional<Storage> other = tuner_.exclude(storage_->kind(), why, for_ever);
+bool AutomaticStorage::replace(const BuildReport& report, const char* why,
+                               StorageTuner::Exclusion exclusion) {
+    const std::optional<Storage> other = tuner_.exclude(storage_->kind(), why, exclusion);
     if (!other) return false;
     tuner_.expect(report.stored + report.dropped);
     use(*other);
@@ -56,21 +57,24 @@ bool AutomaticStorage::replace(const BuildReport& report, const char* why, bool 
 }
 
 bool AutomaticStorage::review(BuildReport& report) {
+    using Exclusion = StorageTuner::Exclusion;
     if (in_slices_) return storage_->review(report);
     const bool fixed = storage_->kind() == Storage::fixed;
     try {
         const bool complete = storage_->review(report);
         if (!complete || !fixed || report.dropped == 0) return complete;
         // The others drop less, or nothing.
-        return !replace(report, "left: a list was longer than slots", false);
+        return !replace(report, "left: a list was longer than slots", Exclusion::this_trial);
     } catch (const UnrepeatableError&) {
-        if (!replace(report, "left: the kernel does not repeat itself", true)) throw;
+        if (!replace(report, "left: the kernel does not repeat itself", Exclusion::permanent))
+            throw;
     } catch (const OverflowError&) {
         if (!fixed && options_.overflow == Overflow::stop) throw;
         const std::exception_ptr error = std::current_exception();
         bool replaced = false;
         try {
-            replaced = replace(report, "left: the lists did not fit any more", false);
+            replaced =
+                replace(report, "left: the lists did not fit any more", Exclusion::this_trial);
         } catch (const OpenClError&) {
             throw;
         } catch (const Error&) {

@@ -29,7 +29,7 @@ public:
 private:
     BuildReport build_once(const std::function<BuildReport()>& run);
     void use(Storage storage);
-    bool replace(const BuildReport& report, const char* why, bool for_ever);
+    bool replace(const BuildReport& report, const char* why, StorageTuner::Exclusion exclusion);
 
     Shape shape_;
     ListsOptions options_;

@@ -11,7 +11,7 @@ namespace {
 /// Builds that count, of each storage in a trial.
 constexpr std::uint32_t samples = 3;
 /// A storage that twice took this many times as long as another is not measured again, or at all.
-constexpr double hopeless = 2;
+constexpr double slow_factor = 2;
 /// Storage::fixed may have this many slots for each record, and so many in any case: the pool of
 /// linked lists starts with as many nodes.
 constexpr std::uint64_t slots_a_record = 4;
@@ -93,7 +93,7 @@ void StorageTuner::begin_trial() {
     for (Candidate& candidate : candidates_) {
         candidate.builds = 0;
         candidate.costs.clear();
-        if (!candidate.for_ever) candidate.excluded.clear();
+        if (candidate.exclusion != Exclusion::permanent) candidate.exclude(Exclusion::none, {});
     }
 }
 
@@ -116,7 +116,7 @@ void StorageTuner::measured(const Measurement& trial) {
     // others use.
     if (candidate.builds > samples ||
         (candidate.costs.size() >= 2 &&
-         total_seconds(candidate.median) > hopeless * total_seconds(best()->median)))
+         total_seconds(candidate.median) > slow_factor * total_seconds(best()->median)))
         next_candidate();
 }
 
@@ -124,9 +124,11 @@ void StorageTuner::measured(const Measurement& trial) {
 void StorageTuner::next_candidate() {
     for (std::size_t i = 0; i < candidates_.size(); ++i) {
         Candidate& candidate = candidates_[i];
-        if (candidate.builds > 0 || !candidate.excluded.empty()) continue;
-        candidate.excluded = refusal(candidate.storage);
-        if (!candidate.excluded.empty()) continue;
+        if (candidate.builds > 0 || candidate.is_excluded()) continue;
+        if (const std::string why = refusal(candidate.storage); !why.empty()) {
+            candidate.exclude(Exclusion::this_trial, why);
+            continue;
+        }
         current_ = i;
         return;
     }
@@ -171,7 +173,7 @@ std::string StorageTuner::refusal(Storage storage) const {
         ratio = std::min(ratio, total_seconds(profile_->cost(storage, pattern)) / seconds);
     }
     const double seconds = total_seconds(known->median);
-    if (ratio <= hopeless || seconds < least / 1.5 || seconds > most * 1.5) return {};
+    if (ratio <= slow_factor || seconds < least / 1.5 || seconds > most * 1.5) return {};
     return std::string("not tried: over twice as slow as ") + name_of(known->storage) +
            " in the profile of this device";
 }
@@ -195,22 +197,20 @@ std::string StorageTuner::refusal_of_fixed() const {
 }
 
 std::optional<Storage> StorageTuner::exclude(Storage storage, const std::string& why,
-                                             bool for_ever) {
+                                             Exclusion exclusion) {
     Candidate& failed = candidate(storage);
-    failed.excluded = why;
-    failed.for_ever = failed.for_ever || for_ever;
+    failed.exclude(std::max(failed.exclusion, exclusion), why);
 
-    // Where a list is too long for slots, or a kernel does not repeat itself, the others do not
-    // mind.
+    // If a list is too long for slots, or a kernel does not repeat itself, the other storages work.
     std::optional<Storage> other;
     for (const Storage safe : {Storage::linked, Storage::counted})
-        if (!other && candidate(safe).excluded.empty()) other = safe;
+        if (!other && !candidate(safe).is_excluded()) other = safe;
     if (const Candidate* known = best(); known != nullptr && known->storage != Storage::fixed)
         other = known->storage;
     if (!other) {
         begin_trial();
-        current_ = static_cast<std::size_t>(candidate(Storage::linked).for_ever ? Storage::counted
-                                                                                : Storage::linked);
+        current_ = static_cast<std::size_t>(
+            candidate(Storage::linked).is_excluded() ? Storage::counted : Storage::linked);
         return {};
     }
     if (candidates_[current_].storage == storage) {
@@ -250,8 +250,8 @@ std::string StorageTuner::reason() const {
     }
     for (const Candidate& other : candidates_) {
         if (&other == &chosen) continue;
-        if (!other.excluded.empty())
-            text += std::string("; ") + name_of(other.storage) + " " + other.excluded;
+        if (other.is_excluded())
+            text += std::string("; ") + name_of(other.storage) + " " + other.why_excluded;
         else if (other.is_measured())
             text += std::string("; ") + name_of(other.storage) + " " +
                     text_of(static_cast<double>(stored_) * total_seconds(other.median));

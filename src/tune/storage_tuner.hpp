@@ -20,18 +20,18 @@ struct Measurement {
     std::uint64_t longest = 0;  ///< records of the longest list
 };
 
-/// Lists that are no longer than this many records are walked whole to measure what reading takes;
-/// of longer ones, as many records.
+/// To measure what reading takes, lists of up to this many records are traversed to the end, and
+/// longer lists only so far.
 inline constexpr std::uint32_t traverse_most = 1u << 20;
 
-/// Chooses the storage of a container from what its builds took. Knows nothing of devices: it is
-/// told what was measured.
+/// Chooses the storage of a container from the times of its builds. Knows nothing of devices: it
+/// takes measurements as input.
 ///
-/// A trial builds with each storage in turn: once to warm up, then up to three times, fewer where
-/// the first two show that another storage is twice as fast. The median time of a build and
-/// `expected_reads` times that of a read decide. When the number of records has doubled or halved,
-/// another trial follows; ever more builds must have passed since the last, so that numbers that go
-/// to and fro do not keep the container on trial.
+/// A trial builds with each storage in turn: once to warm up, then up to three times, fewer if the
+/// first two show that another storage is twice as fast. The median time of a build and
+/// `expected_reads` times that of a read decide. A trial is repeated when the number of records has
+/// doubled or halved. The builds required between trials double each time, so that a number that
+/// alternates does not cause endless trials.
 class StorageTuner {
 public:
     /// What does not change from build to build.
@@ -46,7 +46,7 @@ public:
     [[nodiscard]] Storage storage() const { return candidates_[current_].storage; }
     /// The options of a storage, with room for what was stored so far.
     [[nodiscard]] ListsOptions options(Storage storage) const;
-    /// Whether measured() is to be told of the next build, and built() otherwise.
+    /// Whether to pass the next build to measured(); if not, pass it to built().
     [[nodiscard]] bool on_trial() const { return on_trial_; }
     /// After a build in storage().
     void measured(const Measurement& trial);
@@ -55,10 +55,12 @@ public:
     /// Makes room for so many records in the options.
     void expect(std::uint64_t records) { most_stored_ = std::max(most_stored_, records); }
 
-    /// Excludes a storage that has failed: until the next trial, or for ever. Returns one that may
-    /// succeed where that failed. None if there is none: the next build is the first of a trial.
+    /// Whether a trial may choose a storage.
+    enum class Exclusion { none, this_trial, permanent };
+    /// Excludes a storage that has failed. Returns another that may succeed. None if there is none:
+    /// the next build is the first of a trial.
     [[nodiscard]] std::optional<Storage> exclude(Storage storage, const std::string& why,
-                                                 bool for_ever = false);
+                                                 Exclusion exclusion = Exclusion::this_trial);
 
     /// For people: which storage, and the figures that speak for it.
     [[nodiscard]] std::string reason() const;
@@ -69,10 +71,15 @@ private:
         std::uint32_t builds = 0;      ///< of this trial, the first to warm up
         std::vector<Cost> costs = {};  ///< of a record, in each build but the first
         Cost median = {};              ///< of these
-        std::string excluded = {};     ///< why, and empty if it is not
-        bool for_ever = false;         ///< excluded
+        Exclusion exclusion = Exclusion::none;
+        std::string why_excluded = {};
 
-        [[nodiscard]] bool is_measured() const { return builds > 1 && excluded.empty(); }
+        void exclude(Exclusion how_long, const std::string& why) {
+            exclusion = how_long;
+            why_excluded = why;
+        }
+        [[nodiscard]] bool is_excluded() const { return exclusion != Exclusion::none; }
+        [[nodiscard]] bool is_measured() const { return builds > 1 && !is_excluded(); }
     };
 
     void begin_trial();
