@@ -32,7 +32,7 @@ PinnedStaging::Block PinnedStaging::take() {
     return opencl([&] {
         Block block;
         block.memory = cl::Buffer(context_, CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, block_bytes);
-        // Whatever uses the block is enqueued behind the mapping.
+        // Whatever uses the block is enqueued after the mapping.
         block.bytes = queue_.enqueueMapBuffer(block.memory, CL_FALSE, CL_MAP_READ | CL_MAP_WRITE, 0,
                                               block_bytes);
         return block;

@@ -161,10 +161,10 @@ std::string ProgramText::in_parts(std::string_view log) const {
         const std::string_view number = run(log, at, digits);
         std::size_t line = 0;
         const auto parsed = std::from_chars(number.data(), number.data() + number.size(), line);
-        const auto behind = std::find_if(parts_.begin(), parts_.end(),
-                                         [&](const Part& part) { return part.line > line; });
-        if (parsed.ec != std::errc() || behind == parts_.begin()) continue;
-        const Part& part = *std::prev(behind);
+        const auto after = std::find_if(parts_.begin(), parts_.end(),
+                                        [&](const Part& part) { return part.line > line; });
+        if (parsed.ec != std::errc() || after == parts_.begin()) continue;
+        const Part& part = *std::prev(after);
         out += log.substr(rest, begin - rest);
         out += part.file_name + ":" + std::to_string(part.first + line - part.line - 1);
         rest = at += number.size();

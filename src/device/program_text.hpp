@@ -61,8 +61,8 @@ private:
 /// The letters, digits and underscores after the first `prefix` that has any; empty if none has.
 [[nodiscard]] std::string name_after(std::string_view prefix, std::string_view text);
 
-/// A log that mentions names which users never wrote, with what is behind them. `known` tells
-/// whether the program knows a struct of a name.
+/// A log that mentions names which users never wrote, and what caused them. `known` tells whether
+/// the program knows a struct of a name.
 [[nodiscard]] std::string with_hints(std::string log,
                                      const std::function<bool(const std::string&)>& known);
 

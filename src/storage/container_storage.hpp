@@ -32,7 +32,8 @@ public:
         return std::exchange(storage_, std::move(other));
     }
 
-    /// A build of this container alone that blocks; `run` does all of it.
+    /// A build of this container alone that blocks; `run` does all of it. A hook: AutomaticStorage
+    /// measures and retries here.
     virtual BuildReport build(const std::function<BuildReport()>& run) { return run(); }
     /// Starts a build in the storage in use.
     virtual void start() { storage_->start(); }

@@ -62,8 +62,8 @@ public:
     /// Gives the nodes' memory back, before another storage takes this one's place. What is left
     /// can only be destroyed, or be recovered. Blocks as wait_quietly() does.
     virtual void release_pool() noexcept;
-    /// Makes what a failed build may have left undone, with empty lists. A pool that grows is empty
-    /// afterwards if there was none, or if `without_pool` says so.
+    /// Empties the lists after a failed build and resets the passes. If the pool grows, it starts
+    /// at 0 nodes when it has none or when `without_pool` is true.
     void recover(bool without_pool);
 
     /// Enqueues a check for links, offsets and counts that are inconsistent, or differ from those

@@ -54,7 +54,7 @@ void CountedStorage::start() {
 /// Partitions for the records that the pool has room for. Null where builds have to count.
 std::unique_ptr<Partitions> CountedStorage::partitions_for_pool() const {
     if (options_.overflow != Overflow::grow || slice_.cells != shape_.cells() ||
-        capacity_nodes() <= no_place_up_to_)
+        capacity_nodes() <= partitions_failed_at_)
         return nullptr;
     const auto plan = Partitions::plan(pool_.owner()->info, node_layout(record()).size,
                                        shape_.cells(), capacity_nodes());
@@ -137,8 +137,8 @@ bool CountedStorage::review_partitions(BuildReport& report) {
     }
     set_partitions(nullptr);
     if (inserted.dropped > 0 && demand <= plan.records) {
-        // A thread has found no place: this build counts.
-        no_place_up_to_ = plan.records;
+        // A thread found no block: this build counts.
+        partitions_failed_at_ = plan.records;
         return false;
     }
     pool_.require(demand, report);

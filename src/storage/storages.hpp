@@ -63,8 +63,8 @@ private:
     Findings filled_{
         {pool_.owner(), 1, sizeof(cellist_findings), "findings"}};  ///< of the filling pass
     std::unique_ptr<Partitions> partitions_;  ///< kept between builds; null where these count
-    std::uint64_t no_place_up_to_ =
-        0;                     ///< this capacity; a thread found none in the partitions for it
+    /// The capacity for which a thread found no block in the partitions: smaller pools count.
+    std::uint64_t partitions_failed_at_ = 0;
     cl_uint partitioned_ = 0;  ///< records of the last pass
 };
 
