@@ -9,7 +9,7 @@
 
 #include "support/errors.hpp"
 #include "support/skip.hpp"
-#include "tune/profile.hpp"
+#include "device/profile.hpp"
 
 namespace cellist::test {
 namespace {

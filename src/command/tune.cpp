@@ -9,9 +9,8 @@
 
 #include <cellist/cellist.hpp>
 
-#include "storage/container_storage.hpp"
-#include "tune/profile.hpp"
-#include "tune/storage_tuner.hpp"
+#include "device/profile.hpp"
+#include "tune/measure.hpp"
 
 namespace cellist::command {
 
@@ -63,8 +62,8 @@ detail::Cost measure(const Device& device, Storage storage, detail::Pattern patt
     detail::Cost least;
     for (int i = 0; i < builds; ++i) {
         detail::Measurement trial;
-        const BuildReport report = lists.core().storage().measure(
-            [&] { return lists.build(insert, records, is_random); }, trial);
+        const BuildReport report = detail::measure(
+            lists.core().storage(), [&] { return lists.build(insert, records, is_random); }, trial);
         if (report.stored != records)
             throw Error(std::to_string(report.stored) + " of " + std::to_string(records) +
                         " records were stored: run `cellist selftest` to find the fault");

@@ -11,8 +11,8 @@
 #include <cellist/error.hpp>
 
 #include "device/pinned_staging.hpp"
+#include "device/profile.hpp"
 #include "device/recent.hpp"
-#include "tune/profile.hpp"
 
 namespace cellist::detail {
 

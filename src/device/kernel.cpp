@@ -13,7 +13,7 @@
 #include "device/other_queues.hpp"
 #include "device/parameter.hpp"
 #include "device/program_text.hpp"
-#include "storage/view.hpp"
+#include "device/view.hpp"
 
 namespace cellist {
 

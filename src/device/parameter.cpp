@@ -6,7 +6,7 @@
 #include <map>
 #include <string_view>
 
-#include "storage/view.hpp"
+#include "device/view.hpp"
 
 namespace cellist::detail {
 

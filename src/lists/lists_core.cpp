@@ -11,6 +11,7 @@
 #include "storage/cell_scan.hpp"
 #include "storage/container_storage.hpp"
 #include "storage/storages.hpp"
+#include "tune/automatic.hpp"
 
 namespace cellist::detail {
 

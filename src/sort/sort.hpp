@@ -12,9 +12,9 @@
 
 #include "device/device_state.hpp"
 #include "device/record_kernels.hpp"
+#include "device/view.hpp"
 #include "sort/sort_tuning.hpp"
 #include "storage/storage.hpp"
-#include "storage/view.hpp"
 
 namespace cellist::detail {
 

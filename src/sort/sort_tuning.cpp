@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "storage/view.hpp"
+#include "device/view.hpp"
 
 namespace cellist::detail {
 

@@ -13,8 +13,6 @@
 
 namespace cellist::detail {
 
-struct Measurement;
-
 /// The storage of a container: here the one that the options name. AutomaticStorage changes it from
 /// build to build.
 class ContainerStorage {
@@ -47,17 +45,11 @@ public:
     /// A sentence for people: why this storage is in use.
     [[nodiscard]] virtual std::string reason() const;
 
-    /// Takes the time of a build that `run` does, and the time of a read of every record. Blocks.
-    BuildReport measure(const std::function<BuildReport()>& run, Measurement& measurement);
+    [[nodiscard]] RecordKernels& kernels() const { return kernels_; }
 
 protected:
     RecordKernels& kernels_;
     std::unique_ptr<ListStorage> storage_;
 };
-
-/// What the options name, with empty lists. Throws Error if a size exceeds a limit.
-[[nodiscard]] std::unique_ptr<ContainerStorage> make_container_storage(RecordKernels& kernels,
-                                                                       const Shape& shape,
-                                                                       const ListsOptions& options);
 
 }  // namespace cellist::detail

@@ -16,7 +16,7 @@
 #include <cellist/shape.hpp>
 
 #include "device/device_state.hpp"
-#include "storage/view.hpp"
+#include "device/view.hpp"
 
 namespace cellist::detail {
 

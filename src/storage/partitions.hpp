@@ -7,7 +7,7 @@
 #include <cellist/detail/memory.hpp>
 
 #include "device/device_state.hpp"
-#include "storage/view.hpp"
+#include "device/view.hpp"
 
 namespace cellist::detail {
 

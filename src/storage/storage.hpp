@@ -13,8 +13,8 @@
 #include <cellist/shape.hpp>
 
 #include "device/record_kernels.hpp"
+#include "device/view.hpp"
 #include "storage/node_pool.hpp"
-#include "storage/view.hpp"
 
 namespace cellist::detail {
 

@@ -3,6 +3,7 @@
 #include <exception>
 
 #include "device/device_state.hpp"
+#include "tune/measure.hpp"
 
 namespace cellist::detail {
 
@@ -93,7 +94,7 @@ BuildReport AutomaticStorage::build_once(const std::function<BuildReport()>& run
     }
     const Storage tried = tuner_.storage();
     Measurement measurement;
-    const BuildReport report = measure(run, measurement);
+    const BuildReport report = measure(*this, run, measurement);
     if (storage_->kind() == tried)
         tuner_.measured(measurement);
     else
@@ -127,6 +128,13 @@ void AutomaticStorage::begin_slices() {
 void AutomaticStorage::end_slices() {
     in_slices_ = false;
     ContainerStorage::end_slices();
+}
+
+std::unique_ptr<ContainerStorage> make_container_storage(RecordKernels& kernels, const Shape& shape,
+                                                         const ListsOptions& options) {
+    if (options.storage == Storage::automatic)
+        return std::make_unique<AutomaticStorage>(kernels, shape, options);
+    return std::make_unique<ContainerStorage>(kernels, make_storage(kernels, shape, options));
 }
 
 }  // namespace cellist::detail

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "storage/container_storage.hpp"
@@ -37,5 +38,10 @@ private:
     std::optional<Storage> in_place_;  ///< with its pool; none where the last change has failed
     bool in_slices_ = false;
 };
+
+/// What the options name, with empty lists. Throws Error if a size exceeds a limit.
+[[nodiscard]] std::unique_ptr<ContainerStorage> make_container_storage(RecordKernels& kernels,
+                                                                       const Shape& shape,
+                                                                       const ListsOptions& options);
 
 }  // namespace cellist::detail

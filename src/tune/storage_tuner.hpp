@@ -9,7 +9,7 @@
 
 #include <cellist/options.hpp>
 
-#include "tune/profile.hpp"
+#include "device/profile.hpp"
 
 namespace cellist::detail {
 

@@ -1,4 +1,4 @@
-#include "tune/profile.hpp"
+#include "device/profile.hpp"
 
 #include <algorithm>
 #include <cerrno>
