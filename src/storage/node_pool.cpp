@@ -208,11 +208,13 @@ void NodePool::release() noexcept {
     back_buffer_.reset();
 }
 
-bool NodePool::recover(bool without_nodes) {
+void NodePool::recover(bool without_pool) {
     const std::optional<std::uint64_t> released = std::exchange(released_nodes_, std::nullopt);
-    if (overflow_ == Overflow::grow) return without_nodes || nodes_.cl()() == nullptr;
-    if (released) allocate(*released);
-    return false;
+    if (overflow_ != Overflow::grow) {
+        if (released) allocate(*released);
+    } else if (without_pool || nodes_.cl()() == nullptr) {
+        allocate(0);
+    }
 }
 
 const NodePool::BackBuffer* NodePool::back_buffer() {
@@ -237,12 +239,6 @@ const NodePool::BackBuffer* NodePool::back_buffer() {
 void NodePool::swap_back_buffer() noexcept {
     std::swap(nodes_, back_buffer_->nodes);
     std::swap(heads_, back_buffer_->heads);
-}
-
-void NodePool::describe(cellist_view& view) const {
-    view.pool_nodes = static_cast<cl_uint>(nodes_count());
-    view.shard_bits = shard_bits_;
-    view.thread_slots = thread_slots_;
 }
 
 void NodePool::clear(const Memory& heads, cl_uint head, std::uint64_t first_word,

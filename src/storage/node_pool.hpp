@@ -69,13 +69,15 @@ public:
 
     // ---- capacity
 
-    /// Records that surely fit.
+    /// How many records surely fit.
     [[nodiscard]] std::uint64_t capacity_nodes() const { return capacity_nodes_; }
     /// Nodes there are; more than the capacity where threads have blocks.
     [[nodiscard]] std::uint64_t nodes_count() const {
         return capacity_nodes_ + std::uint64_t{thread_slots_} * CELLIST_BLOCK_NODES;
     }
     [[nodiscard]] std::size_t node_bytes() const { return layout_.node_bytes; }
+    [[nodiscard]] cl_uint shard_bits() const { return shard_bits_; }
+    [[nodiscard]] cl_uint thread_slots() const { return thread_slots_; }
     /// The most nodes that the policy lets the pool have.
     [[nodiscard]] std::uint64_t most_nodes() const;
     /// Memory of the same owner that goes when the pool is replaced.
@@ -100,9 +102,9 @@ public:
 
     /// Gives the nodes' memory back.
     void release() noexcept;
-    /// Allocates again what release() gave back, if the pool does not grow with the records. True
-    /// if a pool that grows has no nodes, or shall have none.
-    [[nodiscard]] bool recover(bool without_nodes);
+    /// Makes a pool again after a failed build. A pool that grows starts at 0 nodes if it has none,
+    /// or if `without_pool` is true. Other pools get back what release() took.
+    void recover(bool without_pool);
 
     // ---- buffers
 
@@ -127,8 +129,6 @@ public:
     /// nothing else is in the pool.
     void swap_back_buffer() noexcept;
 
-    /// Sets the fields of the view that say what the pool has.
-    void describe(cellist_view& view) const;
     /// Sets words of heads, the pool's or others, and clears all counters. Does not block.
     void clear(const Memory& heads, cl_uint head, std::uint64_t first_word, std::uint64_t words);
     /// Sets words of the heads. Does not block.

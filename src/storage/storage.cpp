@@ -29,7 +29,9 @@ cellist_view ListStorage::view(Inserts inserts) const {
     cellist_view view = view_;
     view.first_cell = static_cast<cl_uint>(slice_.first_cell);
     view.open_cells = inserts == Inserts::accepted ? static_cast<cl_uint>(slice_.cells) : 0;
-    pool_.describe(view);
+    view.pool_nodes = static_cast<cl_uint>(pool_.nodes_count());
+    view.shard_bits = pool_.shard_bits();
+    view.thread_slots = pool_.thread_slots();
     return view;
 }
 
@@ -63,16 +65,23 @@ void ListStorage::release_pool() noexcept {
 
 void ListStorage::recover(bool without_pool) {
     wait_quietly();
-    make_whole(pool_.recover(without_pool));
+    pool_.recover(without_pool);
+    reset_passes();
     clear();
 }
 
-void ListStorage::update(BuildReport& report, const Counters::Sum& counters, std::uint64_t stored) {
+void ListStorage::reserve(std::uint64_t total, std::uint64_t) {
+    if (options_.overflow == Overflow::grow && capacity_nodes() < total)
+        pool_.allocate_for_slice(total, slice_.cells);
+}
+
+void ListStorage::update(BuildReport& report, std::uint64_t demand, std::uint64_t stored,
+                         std::uint64_t rejected) {
     expected_->stored = stored;
     report.stored = stored;
-    report.dropped = counters.dropped;
-    report.rejected = counters.rejected;
-    report.attempted = stored + counters.dropped + counters.rejected;
+    report.dropped = demand - stored;
+    report.rejected = rejected;
+    report.attempted = demand + rejected;
     report.capacity_nodes = pool_.capacity_nodes();
 }
 

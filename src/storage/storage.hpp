@@ -74,12 +74,15 @@ public:
     /// From now on, these cells alone have lists. The lists must be empty.
     virtual void set_slice(const Slice& slice) { slice_ = slice; }
     /// Nodes that lists need in so many cells, the longest of them as long, `total` together.
-    [[nodiscard]] virtual std::uint64_t nodes_for(std::uint64_t total, std::uint64_t longest,
-                                                  std::uint64_t cells) const = 0;
+    [[nodiscard]] virtual std::uint64_t nodes_for(std::uint64_t total,
+                                                  [[maybe_unused]] std::uint64_t longest,
+                                                  [[maybe_unused]] std::uint64_t cells) const {
+        return total;
+    }
     /// The most nodes that the policy lets the pool have.
     [[nodiscard]] std::uint64_t most_nodes() const { return pool_.most_nodes(); }
     /// Makes room for such lists in the slice, if the policy is to grow. Throws OverflowError.
-    virtual void reserve(std::uint64_t total, std::uint64_t longest) = 0;
+    virtual void reserve(std::uint64_t total, std::uint64_t longest);
 
     /// Enqueues the reading of the number of late inserts since the last clear(): low and high
     /// word.
@@ -92,7 +95,7 @@ public:
 
     [[nodiscard]] const NodePool& pool() const { return pool_; }
     [[nodiscard]] NodePool& pool() { return pool_; }
-    /// Records that surely fit.
+    /// How many records surely fit.
     [[nodiscard]] std::uint64_t capacity_nodes() const { return pool_.capacity_nodes(); }
     /// Device memory of all buffers that the storage keeps.
     [[nodiscard]] std::uint64_t bytes() const { return pool_.bytes(); }
@@ -107,8 +110,8 @@ protected:
     ListStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options,
                 cl_uint mode, const NodePool::Layout& layout);
 
-    /// What recover() calls; `without_nodes` if the pool shall have none.
-    virtual void make_whole(bool without_nodes) = 0;
+    /// Makes the next pass the first of a build, after recover() has made a pool again.
+    virtual void reset_passes() {}
 
     /// What kernels see of the container.
     [[nodiscard]] cellist_view view(Inserts inserts) const;
@@ -123,8 +126,13 @@ protected:
     void clear_words(cl_uint head, std::uint64_t first_word, std::uint64_t words) {
         pool_.clear(pool_.heads(), head, first_word, words);
     }
-    /// A report of the counters.
-    void update(BuildReport& report, const Counters::Sum& counters, std::uint64_t stored);
+    /// Reports that `stored` of `demand` records for cells of the slice are in the lists.
+    void update(BuildReport& report, std::uint64_t demand, std::uint64_t stored,
+                std::uint64_t rejected);
+    /// The same for a demand of the stored records and those that the counters say were dropped.
+    void update(BuildReport& report, const Counters::Sum& counters, std::uint64_t stored) {
+        update(report, stored + counters.dropped, stored, counters.rejected);
+    }
 
     /// The state after a build, for a validation to compare with.
     struct Expected {

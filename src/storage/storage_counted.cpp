@@ -121,9 +121,7 @@ bool CountedStorage::review_partitions(BuildReport& report) {
     const Counters::Sum inserted = counters_.sum();
     const std::uint64_t demand = partitioned_ + inserted.dropped;
     const std::uint64_t kept = std::min<std::uint64_t>(partitioned_, capacity_nodes());
-    update(report, inserted, kept);
-    report.dropped = demand - kept;
-    report.attempted = demand + inserted.rejected;
+    update(report, demand, kept, inserted.rejected);
     if (report.dropped == 0) return true;
 
     if (inserted.dropped == 0 && pool_.allows(pool_.bytes_with(demand) + plan.bytes())) {
@@ -132,7 +130,7 @@ bool CountedStorage::review_partitions(BuildReport& report) {
         pool_.grow(demand, report);
         clear_words(0, 0, 0);
         move_from_partitions();
-        update(report, inserted, demand);
+        update(report, demand, demand, inserted.rejected);
         return true;
     }
     set_partitions(nullptr);
@@ -154,9 +152,7 @@ bool CountedStorage::review(BuildReport& report) {
     const std::uint64_t demand = demand_.sum + counting.dropped;
     const std::uint64_t kept = std::min<std::uint64_t>(demand_.sum, capacity_nodes());
     if (!counted_) {
-        update(report, counting, kept);
-        report.dropped = demand - kept;
-        report.attempted = demand + counting.rejected;
+        update(report, demand, kept, counting.rejected);
         make_room(report);
         counted_ = true;
         return false;
@@ -188,29 +184,21 @@ void CountedStorage::make_room(const BuildReport& report) {
     scan_.write_offsets(pool_.heads().cl(), pool_.heads().cl(), capacity_nodes());
 }
 
-void CountedStorage::make_whole(bool without_nodes) {
+void CountedStorage::reset_passes() {
     counted_ = false;
     set_partitions(nullptr);
     view_.mode = CELLIST_CONTIGUOUS;
-    if (without_nodes) pool_.allocate(0);
 }
 
-std::uint64_t CountedStorage::nodes_for(std::uint64_t total, std::uint64_t, std::uint64_t) const {
-    return total;
-}
-
-void CountedStorage::reserve(std::uint64_t total, std::uint64_t) {
+void CountedStorage::reserve(std::uint64_t total, std::uint64_t longest) {
     set_partitions(nullptr);
-    if (options_.overflow == Overflow::grow && capacity_nodes() < total)
-        pool_.allocate_for_slice(total, slice_.cells);
+    ListStorage::reserve(total, longest);
 }
 
 std::vector<cl_uint> CountedStorage::counts(BuildReport& report) {
     reading_.wait();
     const Counters::Sum counting = counting_.sum();
-    update(report, counting, 0);
-    report.dropped += demand_.sum;
-    report.attempted += demand_.sum;
+    update(report, demand_.sum + counting.dropped, 0, counting.rejected);
     auto words = host_memory<cl_uint>(pool_.heads().size_bytes() / sizeof(cl_uint));
     pool_.heads().read(words.data(), pool_.heads().size_bytes());
     words.erase(words.begin(), words.begin() + counts_at());

@@ -23,12 +23,6 @@ std::uint64_t FixedStorage::nodes_with(std::uint64_t slots) const {
     return slots * slice_.cells;
 }
 
-void FixedStorage::set_slots(std::uint64_t slots) {
-    view_.slots = 0;
-    pool_.allocate(nodes_with(slots));
-    view_.slots = static_cast<cl_uint>(slots);
-}
-
 void FixedStorage::clear() {
     clear_words(0, 0, shape_.cells());
     expect_nothing();
@@ -59,14 +53,13 @@ bool FixedStorage::review(BuildReport& report) {
                                 std::to_string(slice_.cells) +
                                 " cells are too many (use Storage::linked or counted): " + *reason,
                             report);
-    view_.slots = 0;
-    pool_.grow(nodes_with(longest), report);
-    view_.slots = static_cast<cl_uint>(longest);
+    set_slots(longest, [&](std::uint64_t nodes) { pool_.grow(nodes, report); });
     return false;
 }
 
-void FixedStorage::make_whole(bool without_nodes) {
-    if (without_nodes || capacity_nodes() < nodes_with(view_.slots)) set_slots(0);
+void FixedStorage::reset_passes() {
+    if (capacity_nodes() < nodes_with(view_.slots))
+        set_slots(0, [&](std::uint64_t nodes) { pool_.allocate(nodes); });
 }
 
 void FixedStorage::set_slice(const Slice& slice) {
@@ -81,9 +74,7 @@ std::uint64_t FixedStorage::nodes_for(std::uint64_t, std::uint64_t longest,
 
 void FixedStorage::reserve(std::uint64_t, std::uint64_t longest) {
     if (options_.overflow != Overflow::grow || view_.slots >= longest) return;
-    view_.slots = 0;
-    pool_.allocate_for_slice(nodes_with(longest), slice_.cells);
-    view_.slots = static_cast<cl_uint>(longest);
+    set_slots(longest, [&](std::uint64_t nodes) { pool_.allocate_for_slice(nodes, slice_.cells); });
 }
 
 std::function<Validation()> FixedStorage::validate() {

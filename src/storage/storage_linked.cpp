@@ -45,19 +45,6 @@ bool LinkedStorage::review(BuildReport& report) {
     return false;
 }
 
-void LinkedStorage::make_whole(bool without_nodes) {
-    if (without_nodes) pool_.allocate(0);
-}
-
-std::uint64_t LinkedStorage::nodes_for(std::uint64_t total, std::uint64_t, std::uint64_t) const {
-    return total;
-}
-
-void LinkedStorage::reserve(std::uint64_t total, std::uint64_t) {
-    if (options_.overflow == Overflow::grow && capacity_nodes() < total)
-        pool_.allocate_for_slice(total, slice_.cells);
-}
-
 std::function<Validation()> LinkedStorage::validate() {
     struct Check {
         Memory reached;

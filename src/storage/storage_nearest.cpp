@@ -139,7 +139,7 @@ bool NearestStorage::review(BuildReport& report) {
     return false;
 }
 
-void NearestStorage::make_whole(bool) {
+void NearestStorage::reset_passes() {
     view_.mode = CELLIST_FIXED;
     selecting_ = false;
 }

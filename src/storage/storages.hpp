@@ -16,12 +16,6 @@ public:
     bool end_pass() override;
     bool review(BuildReport& report) override;
     std::function<Validation()> validate() override;
-    std::uint64_t nodes_for(std::uint64_t total, std::uint64_t longest,
-                            std::uint64_t cells) const override;
-    void reserve(std::uint64_t total, std::uint64_t longest) override;
-
-private:
-    void make_whole(bool without_nodes) override;
 };
 
 /// Contiguous lists: two passes over the same kernels, count and fill. A single one where the
@@ -35,8 +29,6 @@ public:
     bool end_pass() override;
     bool review(BuildReport& report) override;
     std::function<Validation()> validate() override;
-    std::uint64_t nodes_for(std::uint64_t total, std::uint64_t longest,
-                            std::uint64_t cells) const override;
     void reserve(std::uint64_t total, std::uint64_t longest) override;
     void add_to(Arguments& arguments, Inserts inserts) const override;
     void release_pool() noexcept override;
@@ -46,7 +38,7 @@ public:
     [[nodiscard]] std::vector<cl_uint> counts(BuildReport& report);
 
 private:
-    void make_whole(bool without_nodes) override;
+    void reset_passes() override;
 
     [[nodiscard]] std::unique_ptr<Partitions> partitions_for_pool() const;
     void set_partitions(std::unique_ptr<Partitions> partitions);
@@ -82,9 +74,16 @@ public:
     void reserve(std::uint64_t total, std::uint64_t longest) override;
 
 private:
-    void make_whole(bool without_nodes) override;
+    void reset_passes() override;
 
-    void set_slots(std::uint64_t slots);
+    /// Replaces the pool by one for `slots`; `allocate` takes its number of nodes. There are no
+    /// slots if it throws.
+    template <class Allocate>
+    void set_slots(std::uint64_t slots, const Allocate& allocate) {
+        view_.slots = 0;
+        allocate(nodes_with(slots));
+        view_.slots = static_cast<cl_uint>(slots);
+    }
     [[nodiscard]] std::uint64_t nodes_with(std::uint64_t slots) const;
 
     CellScan scan_;
@@ -108,7 +107,7 @@ public:
     void reserve(std::uint64_t, std::uint64_t) override {}
 
 private:
-    void make_whole(bool without_nodes) override;
+    void reset_passes() override;
 
     void prepare_threshold_pass();
     void run(const char* name, const Memory* selection = nullptr);

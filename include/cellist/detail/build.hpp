@@ -72,8 +72,8 @@ private:
     std::vector<BuildReport> reports_;
     std::vector<std::unique_ptr<Bystander>> bystanders_;  ///< of the passes since the last review
     std::uint32_t passes_ = 0;
-    Phase phase_ = Phase::ready;
-    std::exception_ptr error_;  ///< that the build failed with
+    Phase phase_ = Phase::ready;  ///< as of the containers, but these may end first
+    std::exception_ptr error_;    ///< that the build failed with
 };
 
 }  // namespace cellist::detail
