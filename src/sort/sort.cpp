@@ -375,7 +375,7 @@ void ListSorter::run_long(Sort& sort, const char* name, const Range& range,
 void ListSorter::swap_pools(Sort& sort) {
     ListStorage& storage = sort.storage;
     if (storage.stored() < storage.pool().nodes_count())
-        run_long(sort, "cellist_sort_allocate", Range::padded(storage.pool().shards_count()),
+        run_long(sort, "cellist_sort_allocate", Range::padded(storage.pool().counter_elements()),
                  arguments_of(storage, static_cast<cl_uint>(storage.stored())));
     storage.pool().swap_back_buffer();
 }

@@ -27,8 +27,8 @@ cl_uint shard_bits_for(std::uint64_t capacity_nodes) {
     return bits;
 }
 
-/// Elements of the shards' buffer: shards, the pool's state, blocks of threads and the table of
-/// threads.
+/// Elements of the buffer of counters: shards, the pool's state, the blocks of threads and the
+/// table of threads.
 std::uint64_t elements_with(cl_uint shard_bits, cl_uint thread_slots) {
     return (std::uint64_t{1} << shard_bits) + 1 + thread_slots +
            thread_slots * sizeof(cl_ulong) / sizeof(cellist_shard);
@@ -52,13 +52,14 @@ std::string mebibytes(std::uint64_t bytes) {
 
 Counters::Sum Counters::sum() const {
     Sum sum;
-    for (const cellist_shard& shard : std::span(elements_).first(shards_)) {
+    for (const cellist_shard& shard : std::span(elements_).first(shard_elements_)) {
         sum.allocated += shard.allocated;
         sum.dropped += wide(shard.dropped_low, shard.dropped_high);
         sum.rejected += wide(shard.rejected_low, shard.rejected_high);
         sum.late += wide(shard.late_low, shard.late_high);
     }
-    for (const cellist_shard& element : std::span(elements_).subspan(shards_, thread_slots_)) {
+    for (const cellist_shard& element :
+         std::span(elements_).subspan(shard_elements_, thread_slots_)) {
         const auto block = std::bit_cast<cellist_thread_block>(element);
         sum.allocated -= (block.last - block.node) + (block.end - block.next);
     }
@@ -124,7 +125,7 @@ cl_uint NodePool::thread_slots_with(std::uint64_t capacity_nodes) const {
 }
 
 std::uint64_t NodePool::bytes_with(std::uint64_t capacity_nodes) const {
-    std::uint64_t replaced = replaceable_bytes_ + nodes_.size_bytes() + shards_.size_bytes();
+    std::uint64_t replaced = replaceable_bytes_ + nodes_.size_bytes() + counters_.size_bytes();
     if (back_buffer_)
         replaced += back_buffer_->nodes.size_bytes() + back_buffer_->heads.size_bytes();
     const cl_uint slots = thread_slots_with(capacity_nodes);
@@ -177,7 +178,7 @@ void NodePool::allocate(std::uint64_t capacity_nodes) {
     back_buffer_.reset();
     const cl_uint bits = shard_bits_for(capacity_nodes);
     const cl_uint slots = thread_slots_with(capacity_nodes);
-    shards_ = Memory(device_, elements_with(bits, slots), sizeof(cellist_shard), "counters");
+    counters_ = Memory(device_, elements_with(bits, slots), sizeof(cellist_shard), "counters");
     shard_bits_ = bits;
     nodes_ = Memory(device_, nodes_with(capacity_nodes, slots), layout_.node_bytes, "pool");
     thread_slots_ = slots;
@@ -247,13 +248,13 @@ void NodePool::clear(const Memory& heads, cl_uint head, std::uint64_t first_word
         clear_.emplace(device_,
                        Source{.text = std::string(kernels::clear_cl), .file_name = "clear.cl"},
                        "cellist_clear", Definitions{});
-    const std::uint64_t counter_words = shards_.size_bytes() / sizeof(cl_uint);
+    const std::uint64_t counter_words = counters_.size_bytes() / sizeof(cl_uint);
     Arguments arguments;
     arguments.add(heads.cl());
     arguments.add(cl_ulong{first_word});
     arguments.add(cl_ulong{words});
     arguments.add(head);
-    arguments.add(shards_.cl());
+    arguments.add(counters_.cl());
     arguments.add(static_cast<cl_uint>(counter_words));
     clear_->enqueue(Range::padded(std::max(words, counter_words)), arguments);
 }
@@ -267,18 +268,19 @@ void NodePool::fill_heads(cl_uint value, std::uint64_t first_word, std::uint64_t
 }
 
 PendingRead NodePool::read(Counters& counters) const {
-    counters.shards_ = this->counters();
+    counters.shard_elements_ = shard_elements();
     counters.thread_slots_ = thread_slots_;
-    counters.elements_.resize(shards_count());
-    return shards_.read_later(counters.elements_.data(), shards_.size_bytes());
+    counters.elements_.resize(counter_elements());
+    return counters_.read_later(counters.elements_.data(), counters_.size_bytes());
 }
 
 PendingRead NodePool::read_late_inserts(std::array<cl_uint, 2>& words) const {
     static_assert(offsetof(cellist_shard, late_high) ==
                   offsetof(cellist_shard, late_low) + sizeof(cl_uint));
-    // After the last shard, see cellist_refuse.
-    const std::uint64_t from = (counters() - 1) * sizeof(cellist_shard);
-    return shards_.read_later(words.data(), sizeof words, from + offsetof(cellist_shard, late_low));
+    // After the last shard, see cellist_count_unstored.
+    const std::uint64_t from = (shard_elements() - 1) * sizeof(cellist_shard);
+    return counters_.read_later(words.data(), sizeof words,
+                                from + offsetof(cellist_shard, late_low));
 }
 
 }  // namespace cellist::detail

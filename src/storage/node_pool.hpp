@@ -35,7 +35,7 @@ private:
     friend class NodePool;
 
     std::vector<cellist_shard> elements_;  ///< shards, then per-thread blocks, then threads
-    std::size_t shards_ = 0;               ///< and the pool's state
+    std::size_t shard_elements_ = 0;       ///< the shards and the pool's state
     cl_uint thread_slots_ = 0;
 };
 
@@ -110,10 +110,10 @@ public:
 
     [[nodiscard]] const Memory& heads() const { return heads_; }
     [[nodiscard]] const Memory& nodes() const { return nodes_; }
-    [[nodiscard]] const Memory& shards() const { return shards_; }
-    /// Elements of the shards' buffer: threads and their blocks included.
-    [[nodiscard]] std::uint64_t shards_count() const {
-        return shards_.size_bytes() / sizeof(cellist_shard);
+    [[nodiscard]] const Memory& counters() const { return counters_; }
+    /// Elements of the buffer of counters; threads and their blocks are among them.
+    [[nodiscard]] std::uint64_t counter_elements() const {
+        return counters_.size_bytes() / sizeof(cellist_shard);
     }
     void replace_heads(Memory heads) { heads_ = std::move(heads); }
 
@@ -140,7 +140,7 @@ public:
 
 private:
     [[nodiscard]] cl_uint thread_slots_with(std::uint64_t capacity_nodes) const;
-    [[nodiscard]] std::size_t counters() const { return (std::size_t{1} << shard_bits_) + 1; }
+    [[nodiscard]] std::size_t shard_elements() const { return (std::size_t{1} << shard_bits_) + 1; }
 
     MemoryOwner device_;
     MemoryOwner container_;
@@ -156,7 +156,7 @@ private:
     std::uint32_t growths_ = 0;  ///< of this build
     Memory heads_;
     Memory nodes_;
-    Memory shards_;
+    Memory counters_;
     std::optional<BackBuffer> back_buffer_;
     std::optional<Kernel> clear_;
 };

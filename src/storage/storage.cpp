@@ -43,7 +43,7 @@ void ListStorage::add_to(Arguments& arguments, const Memory& nodes, const Memory
                          const cellist_view& view) const {
     arguments.add_nodes(nodes, record().name);
     arguments.add(heads);
-    arguments.add(pool_.shards());
+    arguments.add(pool_.counters());
     arguments.append(Arguments::Kind::value, &view, sizeof view);
     arguments.add_mode(view.mode);
 }
