@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstdlib>
 #include <random>
+#include <utility>
 
 #include <cellist/device.hpp>
 
@@ -151,33 +152,24 @@ Device Device::choose(std::string_view selector) {
 }
 
 Device::Device(const cl::Device& device)
-    : state_("a Device", std::make_shared<detail::DeviceState>()) {
-    detail::opencl([&] {
-        state_->context = cl::Context(device);
-        state_->queue = cl::CommandQueue(state_->context, device);
-        state_->staging = std::make_shared<detail::PinnedStaging>(state_->context, state_->queue);
-        state_->device = cl::Device(device);
-        state_->info = describe(device);
-        state_->max_constant_bytes = device.getInfo<CL_DEVICE_MAX_CONSTANT_BUFFER_SIZE>();
-    });
-}
+    : state_("a Device", detail::opencl([&] {
+                 cl::Context context(device);
+                 cl::CommandQueue queue(context, device);
+                 return std::make_shared<detail::DeviceState>(std::move(context), std::move(queue),
+                                                              device, false);
+             })) {}
 
 Device::Device(cl::Context context, cl::CommandQueue queue)
-    : state_("a Device", std::make_shared<detail::DeviceState>()) {
-    detail::opencl([&] {
-        if (queue_info<cl_context>(queue, CL_QUEUE_CONTEXT) != context())
-            throw Error("the command queue belongs to another context");
-        state_->out_of_order =
-            (queue_info<cl_command_queue_properties>(queue, CL_QUEUE_PROPERTIES) &
-             CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0;
-        state_->device = cl::Device(queue_info<cl_device_id>(queue, CL_QUEUE_DEVICE), true);
-        state_->info = describe(state_->device);
-        state_->max_constant_bytes = state_->device.getInfo<CL_DEVICE_MAX_CONSTANT_BUFFER_SIZE>();
-        state_->context = std::move(context);
-        state_->queue = std::move(queue);
-        state_->staging = std::make_shared<detail::PinnedStaging>(state_->context, state_->queue);
-    });
-}
+    : state_("a Device", detail::opencl([&] {
+                 if (queue_info<cl_context>(queue, CL_QUEUE_CONTEXT) != context())
+                     throw Error("the command queue belongs to another context");
+                 const bool out_of_order =
+                     (queue_info<cl_command_queue_properties>(queue, CL_QUEUE_PROPERTIES) &
+                      CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0;
+                 cl::Device device(queue_info<cl_device_id>(queue, CL_QUEUE_DEVICE), true);
+                 return std::make_shared<detail::DeviceState>(std::move(context), std::move(queue),
+                                                              std::move(device), out_of_order);
+             })) {}
 
 Device::Device(Device&&) noexcept = default;
 Device& Device::operator=(Device&&) noexcept = default;
@@ -207,6 +199,16 @@ void Device::enqueue_wait(const std::vector<cl::Event>& events) const {
 cl::Event Device::enqueue_marker() const { return state_->enqueue_marker(); }
 
 namespace detail {
+
+DeviceState::DeviceState(cl::Context its_context, cl::CommandQueue its_queue, cl::Device its_device,
+                         bool is_out_of_order)
+    : context(std::move(its_context)),
+      queue(std::move(its_queue)),
+      device(std::move(its_device)),
+      info(cellist::describe(device)),
+      out_of_order(is_out_of_order),
+      max_constant_bytes(device.getInfo<CL_DEVICE_MAX_CONSTANT_BUFFER_SIZE>()),
+      staging(std::make_shared<PinnedStaging>(context, queue)) {}
 
 const cl::CommandQueue& DeviceState::ordered_queue() const {
     if (out_of_order) opencl([&] { queue.enqueueBarrierWithWaitList(); });

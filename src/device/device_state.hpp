@@ -18,12 +18,16 @@ namespace cellist::detail {
 
 /// What a Device and everything made from it share.
 struct DeviceState {
+    /// Throws cl::Error.
+    DeviceState(cl::Context its_context, cl::CommandQueue its_queue, cl::Device its_device,
+                bool is_out_of_order);
+
     cl::Context context;
     cl::CommandQueue queue;
     cl::Device device;
     DeviceInfo info;
-    bool out_of_order = false;             ///< the queue
-    std::uint64_t max_constant_bytes = 0;  ///< of a buffer in constant memory
+    bool out_of_order;                 ///< the queue
+    std::uint64_t max_constant_bytes;  ///< of a buffer in constant memory
     std::shared_ptr<PinnedStaging> staging;
 
     /// The queue, for one command that starts after all that were enqueued before.
