@@ -239,6 +239,41 @@ bool holds_depths(cl_mem image) {
 
 std::string bytes(std::uint64_t size) { return std::to_string(size) + " bytes"; }
 
+// These call `fail` with what the parameter takes and what the kernel was given.
+
+template <class Fail>
+void check_local_size(const DeviceInfo& device, const Parameter& parameter, std::size_t size,
+                      const Fail& fail) {
+    const std::size_t least = std::max<std::size_t>(parameter.size, 1);
+    if (size < least) fail("at least " + bytes(least), std::to_string(size));
+    if (size > device.local_memory_bytes)
+        fail("at most " + bytes(device.local_memory_bytes) + " on " + device.name,
+             std::to_string(size));
+}
+
+template <class Fail>
+void check_constant_size(const DeviceState& device, cl_mem memory, const Fail& fail) {
+    const auto size = memory_info<std::size_t>(memory, CL_MEM_SIZE);
+    if (size > device.max_constant_bytes)
+        fail("at most " + bytes(device.max_constant_bytes) + " on " + device.info.name,
+             std::to_string(size) + " (declare it as a global const pointer)");
+}
+
+template <class Fail>
+void check_image(const Parameter& parameter, const Given& found, const Fail& fail) {
+    if (parameter.image != 0 && found.object != parameter.image)
+        fail(image_name(parameter.image), image_name(found.object));
+    if (parameter.image != 0 && holds_depths(found.memory) != parameter.is_depth)
+        fail(parameter.is_depth ? "a depth image" : "a colour image",
+             parameter.is_depth ? "a colour image" : "a depth image");
+    const auto flags = memory_info<cl_mem_flags>(found.memory, CL_MEM_FLAGS);
+    const auto access = parameter.access;
+    if ((flags & CL_MEM_READ_ONLY) != 0 && access != CL_KERNEL_ARG_ACCESS_READ_ONLY)
+        fail("an image that kernels may write", "one with CL_MEM_READ_ONLY");
+    if ((flags & CL_MEM_WRITE_ONLY) != 0 && access != CL_KERNEL_ARG_ACCESS_WRITE_ONLY)
+        fail("an image that kernels may read", "one with CL_MEM_WRITE_ONLY");
+}
+
 }  // namespace
 
 std::vector<Parameter> parameters_of(const cl::Kernel& kernel, const Definitions& definitions) {
@@ -281,32 +316,10 @@ void ArgumentCheck::operator()(std::size_t index, const Parameter& parameter,
                                       ? " (pass Buffer::cl() to reinterpret its elements)"
                                       : ""));
     }
-    if (found.kind == Kind::local) {
-        const std::size_t least = std::max<std::size_t>(parameter.size, 1);
-        if (argument.size < least) fail("at least " + bytes(least), std::to_string(argument.size));
-        if (argument.size > device_.info.local_memory_bytes)
-            fail("at most " + bytes(device_.info.local_memory_bytes) + " on " + device_.info.name,
-                 std::to_string(argument.size));
-    }
-    if (found.kind == Kind::buffer && parameter.is_constant) {
-        const auto size = memory_info<std::size_t>(found.memory, CL_MEM_SIZE);
-        if (size > device_.max_constant_bytes)
-            fail("at most " + bytes(device_.max_constant_bytes) + " on " + device_.info.name,
-                 std::to_string(size) + " (declare it as a global const pointer)");
-    }
-    if (found.kind == Kind::image) {
-        if (parameter.image != 0 && found.object != parameter.image)
-            fail(image_name(parameter.image), image_name(found.object));
-        if (parameter.image != 0 && holds_depths(found.memory) != parameter.is_depth)
-            fail(parameter.is_depth ? "a depth image" : "a colour image",
-                 parameter.is_depth ? "a colour image" : "a depth image");
-        const auto flags = memory_info<cl_mem_flags>(found.memory, CL_MEM_FLAGS);
-        const auto access = parameter.access;
-        if ((flags & CL_MEM_READ_ONLY) != 0 && access != CL_KERNEL_ARG_ACCESS_READ_ONLY)
-            fail("an image that kernels may write", "one with CL_MEM_READ_ONLY");
-        if ((flags & CL_MEM_WRITE_ONLY) != 0 && access != CL_KERNEL_ARG_ACCESS_WRITE_ONLY)
-            fail("an image that kernels may read", "one with CL_MEM_WRITE_ONLY");
-    }
+    if (found.kind == Kind::local) check_local_size(device_.info, parameter, argument.size, fail);
+    if (found.kind == Kind::buffer && parameter.is_constant)
+        check_constant_size(device_, found.memory, fail);
+    if (found.kind == Kind::image) check_image(parameter, found, fail);
 }
 
 }  // namespace cellist::detail
