@@ -7,9 +7,9 @@
 
 #include <sys/wait.h>
 
+#include "device/profile.hpp"
 #include "support/errors.hpp"
 #include "support/skip.hpp"
-#include "device/profile.hpp"
 
 namespace cellist::test {
 namespace {

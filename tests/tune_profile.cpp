@@ -7,9 +7,9 @@
 
 #include <sys/stat.h>
 
+#include "device/profile.hpp"
 #include "support/errors.hpp"
 #include "support/inserts.hpp"
-#include "device/profile.hpp"
 
 namespace cellist::test {
 namespace {
