@@ -45,19 +45,19 @@ static inline float oit_resolution(const OitResolution* resolution, int kind, fl
 
 // A layer, and the light in front of it.
 typedef struct {
-    OitLights before;
+    OitBlendState before;
     OitFragment fragment;
-} OitBlended;
+} OitLayer;
 
 typedef struct {
-    OitBlended layers[OIT_WINDOW];  // the i-th layer of a pixel at i % OIT_WINDOW
+    OitLayer layers[OIT_WINDOW];  // the i-th layer of a pixel at i % OIT_WINDOW
     uint count;
     // Of the last layer that is no longer among them: its depth, and the light that gets there.
     float lost_depth, lost_reaches;
     float effect[OIT_DEPTHS_OF_NODES];  // linear, of all orders that depths do not tell
 } OitOrder;
 
-static inline float oit_light_difference(const OitLight* a, const OitLight* b, float brightest,
+static inline float oit_blend_difference(const OitBlend* a, const OitBlend* b, float brightest,
                                          float distance) {
     float difference = oit_brightest(fabs(a->colour - b->colour)) +
                        oit_most(fabs(a->transmittance - b->transmittance)) * brightest;
@@ -100,22 +100,22 @@ static inline float oit_gap(const OitFragment* front, const OitFragment* back, i
 
 // Adds how much the image changes at most if two layers change places, in the samples in which they
 // are closer than depths resolve. brightest: of the light behind. distance: through what is behind.
-static inline void oit_exchange(OitOrder* order, const OitPixel* pixel, const OitBlended* front,
+static inline void oit_exchange(OitOrder* order, const OitPixel* pixel, const OitLayer* front,
                                 const OitFragment* fragment, float brightest, float distance,
                                 const float* close) {
     OitFragment back = *fragment;
     back.depth = front->fragment.depth;
-    for (int i = 0; i < OIT_LIGHTS; ++i) {
+    for (int i = 0; i < OIT_BLENDED_SAMPLES; ++i) {
         if (!oit_covers(pixel, &front->fragment, i) || !oit_covers(pixel, &back, i)) continue;
         const float gap = oit_gap(&front->fragment, fragment, pixel->first_sample + i);
         if (gap > fmax(close[0], fmax(close[1], close[2]))) continue;
-        OitLight ordered = front->before.of[i], swapped = ordered;
+        OitBlend ordered = front->before.of[i], swapped = ordered;
         oit_blend(&ordered, &front->fragment, pixel->ray_length);
         oit_blend(&ordered, &back, pixel->ray_length);
         oit_blend(&swapped, &back, pixel->ray_length);
         oit_blend(&swapped, &front->fragment, pixel->ray_length);
-        const float effect =
-            oit_light_difference(&ordered, &swapped, brightest, distance) / (float)OIT_LIGHTS;
+        const float effect = oit_blend_difference(&ordered, &swapped, brightest, distance) /
+                             (float)OIT_BLENDED_SAMPLES;
         for (int kind = 0; kind < OIT_DEPTHS_OF_NODES; ++kind)
             if (gap <= close[kind]) order->effect[kind] += effect;
     }
@@ -123,14 +123,14 @@ static inline void oit_exchange(OitOrder* order, const OitPixel* pixel, const Oi
 
 // The next layer of a pixel.
 static inline void oit_next_layer(OitOrder* order, const OitPixel* pixel,
-                                  const OitResolution* resolution, const OitLights* before,
+                                  const OitResolution* resolution, const OitBlendState* before,
                                   const OitFragment* fragment, float brightest, float last_depth) {
     const float distance = fmax(last_depth - fragment->depth, 0.0f) * pixel->ray_length;
     float close[OIT_DEPTHS_OF_NODES];
     for (int kind = 0; kind < OIT_DEPTHS_OF_NODES; ++kind)
         close[kind] = oit_resolution(resolution, kind, fragment->depth);
     for (uint back = 1; back <= min(order->count, (uint)OIT_WINDOW); ++back) {
-        const OitBlended* front = &order->layers[(order->count - back) % OIT_WINDOW];
+        const OitLayer* front = &order->layers[(order->count - back) % OIT_WINDOW];
         oit_exchange(order, pixel, front, fragment, brightest, distance, close);
     }
     // With more than that, all light that gets there may change.
@@ -138,12 +138,12 @@ static inline void oit_next_layer(OitOrder* order, const OitPixel* pixel,
         if (oit_least_depth(fragment) - order->lost_depth <= close[kind])
             order->effect[kind] += order->lost_reaches * brightest;
 
-    OitBlended* location = &order->layers[order->count % OIT_WINDOW];
+    OitLayer* location = &order->layers[order->count % OIT_WINDOW];
     if (order->count >= OIT_WINDOW &&
         oit_greatest_depth(&location->fragment) >= order->lost_depth) {
         order->lost_depth = oit_greatest_depth(&location->fragment);
         order->lost_reaches = 0.0f;
-        for (int i = 0; i < OIT_LIGHTS; ++i)
+        for (int i = 0; i < OIT_BLENDED_SAMPLES; ++i)
             order->lost_reaches =
                 fmax(order->lost_reaches, oit_most(location->before.of[i].transmittance));
     }
@@ -226,7 +226,7 @@ static inline uint oit_surely_visible(OIT_SCREEN, const OitPixel* pixel,
     uint sure = fragment->coverage;
 #ifdef OIT_HAS_OPAQUE
     const float reach = oit_resolution(resolution, 0, fragment->depth);
-    for (int i = 0; i < OIT_LIGHTS; ++i) {
+    for (int i = 0; i < OIT_BLENDED_SAMPLES; ++i) {
         float depth;
         (void)oit_behind(OIT_SCREEN_PASS, pixel, i, &depth);
         if (fabs(depth - fragment->depth) <= reach) *close |= 1u << i & sure;
@@ -236,14 +236,16 @@ static inline uint oit_surely_visible(OIT_SCREEN, const OitPixel* pixel,
     return sure;
 }
 
-static inline float3 oit_mean_seen(OIT_SCREEN, const OitPixel* pixel, const OitLights* lights) {
-    OitLights copy = *lights;
-    return oit_sum_of_samples(OIT_SCREEN_PASS, pixel, &copy) / (float)OIT_LIGHTS;
+static inline float3 oit_mean_seen(OIT_SCREEN, const OitPixel* pixel,
+                                   const OitBlendState* blended) {
+    OitBlendState copy = *blended;
+    return oit_sum_of_samples(OIT_SCREEN_PASS, pixel, &copy) / (float)OIT_BLENDED_SAMPLES;
 }
 
-static inline float oit_passes(const OitLights* lights) {
+static inline float oit_passes(const OitBlendState* blended) {
     float most = 0.0f;
-    for (int i = 0; i < OIT_LIGHTS; ++i) most = fmax(most, oit_most(lights->of[i].transmittance));
+    for (int i = 0; i < OIT_BLENDED_SAMPLES; ++i)
+        most = fmax(most, oit_most(blended->of[i].transmittance));
     return most;
 }
 
@@ -257,7 +259,7 @@ kernel void oit_survey(CELLIST_LISTS(OIT_NODE, fragments), const OitResolution r
 
         // The brightest light that can come from behind a layer, and where the last surface is.
         float brightest = 0.0f, added = 0.0f, last_depth = 0.0f;
-        for (int i = 0; i < OIT_LIGHTS; ++i) {
+        for (int i = 0; i < OIT_BLENDED_SAMPLES; ++i) {
             float depth;
             brightest =
                 fmax(brightest, oit_brightest(oit_behind(OIT_SCREEN_PASS, &pixel, i, &depth)));
@@ -273,7 +275,7 @@ kernel void oit_survey(CELLIST_LISTS(OIT_NODE, fragments), const OitResolution r
         }
         brightest += added;
 
-        OitLights lights = oit_lights();
+        OitBlendState blended = oit_blend_state();
         OitOrder order;
         order.count = 0;
         order.lost_depth = -INFINITY;
@@ -295,35 +297,35 @@ kernel void oit_survey(CELLIST_LISTS(OIT_NODE, fragments), const OitResolution r
             const uint sure =
                 oit_surely_visible(OIT_SCREEN_PASS, &pixel, &resolution, &fragment, &close);
             if (close != 0) {
-                OitLights with = lights;
+                OitBlendState with = blended;
                 fragment.coverage = close;
                 oit_add(&with, &pixel, &fragment);
                 hidden += oit_brightest(fabs(oit_mean_seen(OIT_SCREEN_PASS, &pixel, &with) -
-                                             oit_mean_seen(OIT_SCREEN_PASS, &pixel, &lights)));
+                                             oit_mean_seen(OIT_SCREEN_PASS, &pixel, &blended)));
             }
             if (sure == 0) continue;
             fragment.coverage = sure;
 
-            const float passes = oit_passes(&lights);
+            const float passes = oit_passes(&blended);
             for (int i = 0; i < OIT_CUTS; ++i) {
                 if (is_cut >> i & 1) continue;
                 if (i < OIT_LAYER_COUNT ? layers != oit_layer_counts[i]
                                         : passes > oit_epsilons[i - OIT_LAYER_COUNT])
                     continue;
                 is_cut |= 1u << i;
-                cut[i] = oit_mean_seen(OIT_SCREEN_PASS, &pixel, &lights);
+                cut[i] = oit_mean_seen(OIT_SCREEN_PASS, &pixel, &blended);
                 if (i < OIT_LAYER_COUNT) behind[i] = passes;
             }
-            oit_next_layer(&order, &pixel, &resolution, &lights, &fragment, brightest, last_depth);
+            oit_next_layer(&order, &pixel, &resolution, &blended, &fragment, brightest, last_depth);
             oit_add_packing(&packing, &pixel.frame, &fragment, passes, brightest);
             shares += passes * fragment.alpha;
-            oit_add(&lights, &pixel, &fragment);
+            oit_add(&blended, &pixel, &fragment);
             ++layers;
             own.most[OIT_OPACITY] = fmax(own.most[OIT_OPACITY], fragment.alpha);
             own.most[OIT_OPACITY + 1] = fmax(own.most[OIT_OPACITY + 1], -fragment.alpha);
         }
 
-        const float3 seen = oit_mean_seen(OIT_SCREEN_PASS, &pixel, &lights);
+        const float3 seen = oit_mean_seen(OIT_SCREEN_PASS, &pixel, &blended);
         const float3 encoded = oit_srgb3(seen);
         const float3 off = oit_rounding(&pixel.frame, seen, layers, shares, brightest);
         const float3 certain = oit_encoded_error3(seen, off) + OIT_ENCODING_ERROR;

@@ -60,8 +60,8 @@ kernel void oit_resolve_adaptive(CELLIST_LISTS(OIT_NODE, fragments), OIT_SCREEN)
     OitPixel pixel;
     if (!oit_pixel(OIT_SCREEN_PASS, &pixel)) return;
     const uint cell = cellist_cell3(fragments, pixel.x, pixel.y, pixel.eye);
-    OitLights lights = oit_lights();
-    for (int i = 0; i < OIT_LIGHTS; ++i) {
+    OitBlendState blended = oit_blend_state();
+    for (int i = 0; i < OIT_BLENDED_SAMPLES; ++i) {
         OitSteps steps;
         steps.count = 0;
         cellist_for_each(fragments, cell, node) {
@@ -75,10 +75,10 @@ kernel void oit_resolve_adaptive(CELLIST_LISTS(OIT_NODE, fragments), OIT_SCREEN)
             if (!oit_covers(&pixel, &fragment, i)) continue;
             if (fragment.depth > depth) reaches = oit_reaches(&steps, fragment.depth);
             depth = fragment.depth;
-            lights.of[i].colour += reaches * fragment.alpha * fragment.colour;
+            blended.of[i].colour += reaches * fragment.alpha * fragment.colour;
             reaches *= 1.0f - fragment.alpha;
         }
-        if (steps.count > 0) lights.of[i].transmittance = steps.passes[steps.count - 1];
+        if (steps.count > 0) blended.of[i].transmittance = steps.passes[steps.count - 1];
     }
-    oit_write(OIT_SCREEN_PASS, &pixel, &lights);
+    oit_write(OIT_SCREEN_PASS, &pixel, &blended);
 }

@@ -50,18 +50,18 @@ kernel void oit_peel_buckets(global ulong* begin, global uint* range, global ulo
                              global uint* left, uint first, OIT_SCREEN) {
     OitPixel pixel;
     if (!oit_pixel(OIT_SCREEN_PASS, &pixel)) return;
-    OitLights lights = oit_lights();
+    OitBlendState blended = oit_blend_state();
     if (!first) {
         if (begin[pixel.pixel] == OIT_LAST_KEY) return;
-        lights = oit_load(state, &pixel);
+        blended = oit_load(state, &pixel);
     }
     ulong then = OIT_LAST_KEY;
     for (uint i = 0; i < OIT_BUCKETS; ++i) {
         const size_t bucket = pixel.pixel * OIT_BUCKETS + i;
         if (counts[bucket] == 0) continue;
-        if (then == OIT_LAST_KEY && !oit_done(&lights, &pixel)) {
+        if (then == OIT_LAST_KEY && !oit_done(&blended, &pixel)) {
             const OitFragment fragment = oit_kept(nodes, bucket, &pixel.frame);
-            oit_add(&lights, &pixel, &fragment);
+            oit_add(&blended, &pixel, &fragment);
             if (counts[bucket] > 1) {
                 then = buckets[bucket] + 1;
                 range[2 * pixel.pixel] = as_uint(oit_depth_of_peeling_key(buckets[bucket]));
@@ -72,6 +72,6 @@ kernel void oit_peel_buckets(global ulong* begin, global uint* range, global ulo
         buckets[bucket] = OIT_LAST_KEY;
     }
     begin[pixel.pixel] = then;
-    oit_save(state, &pixel, &lights);
+    oit_save(state, &pixel, &blended);
 }
 #endif
