@@ -11,7 +11,7 @@
 // Nothing more is counted beyond this, so that the counters cannot wrap.
 #define RASTER_COUNT_MAX 0x80000000u
 
-#define RASTER_QUEUES                                                                              \
+#define RASTER_BIN_QUEUES                                                                          \
     volatile global RasterCounts *counts, global RasterTriangle *triangles,                        \
         const uint triangles_capacity, global RasterBlock *blocks, const uint blocks_capacity
 
@@ -70,7 +70,7 @@ static inline bool raster_ready(const View* view, RasterTriangle* t) {
 
 // A group a batch: a work-item a triangle, and then all work-items, of which there may be more, share
 // the triangles' blocks.
-kernel void raster_bin(RASTER_QUEUES, RASTER_SCENE) {
+kernel void raster_bin(RASTER_BIN_QUEUES, RASTER_SCENE) {
     local uint listed[RASTER_BATCH * RASTER_PIECES_MAX];  // of the queue
     local RasterTriangle near[RASTER_BATCH];              // the first of these
     local uint listed_count, unclipped, block_count, first;

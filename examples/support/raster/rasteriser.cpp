@@ -98,7 +98,7 @@ cellist::Source setup_source(const cellist::Device& device, const Sampling& samp
             .options = build_options(device)};
 }
 
-// A row of a view, in front of which the mesh is placed. Rounded once.
+// A row of a view times the place of the mesh. Rounded once.
 void set_row(cl_float (&out)[4], const cl_float (&row)[4], const glm::dmat4& to_world) {
     const glm::dvec4 in(row[0], row[1], row[2], row[3]);
     const glm::dvec4 product = in * to_world;
@@ -113,9 +113,8 @@ void append_batches(std::vector<RasterBatch>& batches, std::size_t instance, cl_
                            first + begin + std::min(size, count - begin)});
 }
 
-// Threads of a processor take many groups at a time, one behind the other: under PoCL 3.1 each its share of
-// those that are left, up to a bound. So that a dense part of a mesh does not fall to one of them, sixteenths
-// of the batches follow one another in the order of their reversed bits.
+// Under PoCL, a thread takes many consecutive groups at a time. Sixteenths of the batches are therefore
+// interleaved, in the order of their reversed bits: no thread gets all of a dense part of a mesh.
 std::vector<RasterBatch> in_order_for(const cellist::Device& device,
                                       std::vector<RasterBatch> batches) {
     if (device.info().type == CL_DEVICE_TYPE_GPU) return batches;
@@ -245,8 +244,6 @@ Projection::Projection(const cellist::Device& device, SetupKernels& kernels,
     : kernels_(kernels),
       geometry_(geometry),
       eyes_(views.size()),
-      width_(views.front().width),
-      height_(views.front().height),
       views_(device, views),
       instances_(device, views.size() * placed.size()),
       batches_(device, vertex_batches(geometry, placed, views.size())),
@@ -262,7 +259,7 @@ void Projection::move(std::span<const Placed> placed, std::span<const View> view
         for (const Placed& one : placed) {
             const Geometry::Part& part = geometry_.part(one.mesh);
             instances.push_back(instance_of(one, views[eye], eye));
-            instances.back().projected = next - part.first_vertex;
+            instances.back().vertex_offset = next - part.first_vertex;
             next += part.vertices;
         }
     instances_.upload_async(instances).wait();

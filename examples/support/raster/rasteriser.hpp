@@ -16,7 +16,7 @@
 
 namespace raster {
 
-/// Meshes on the device, one behind the other.
+/// Meshes on the device, one after the other.
 class Geometry {
 public:
     /// Throws InputError where the meshes have more than 2^32 / 3 triangles or vertices.
@@ -49,8 +49,7 @@ struct Placed {
     cl_uint tag = 0;  ///< for the user's kernels
 };
 
-/// How a view sees a mesh, to the last bit as the device does. The projected vertices' place is left
-/// at 0.
+/// How a view sees a mesh, to the last bit as the device does. vertex_offset is left at 0.
 [[nodiscard]] RasterInstance instance_of(const Placed& placed, const View& view, cl_uint eye);
 
 /// The build options of every kernel of the rasteriser: correctly rounded division where the device
@@ -58,7 +57,7 @@ struct Placed {
 [[nodiscard]] std::string build_options(const cellist::Device& device);
 [[nodiscard]] bool divides_exactly(const cellist::Device& device);
 
-/// What passes and the tiles are compiled for.
+/// What the kernels are compiled for.
 struct Sampling {
     int samples = 1;           ///< of a pixel: 1, 2, 4 or 8
     bool depth_range = false;  ///< fragments have slopes of their depth
@@ -121,8 +120,6 @@ private:
     SetupKernels& kernels_;
     const Geometry& geometry_;
     std::size_t eyes_;
-    cl_int width_;
-    cl_int height_;
     std::vector<std::size_t> meshes_;  ///< of the instances, in each eye
     cellist::Buffer<View> views_;
     cellist::Buffer<RasterInstance> instances_;

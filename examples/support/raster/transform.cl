@@ -51,5 +51,5 @@ kernel void raster_transform(global const View* views, global const RasterInstan
     vertex.outside = raster_outside(&view, x, y, vertex.w);
     vertex.x = vertex.outside == 0 ? raster_snap(x, vertex.w, view.width) : 0;
     vertex.y = vertex.outside == 0 ? raster_snap(y, vertex.w, view.height) : 0;
-    vertices[i + instance.projected] = vertex;
+    vertices[i + instance.vertex_offset] = vertex;
 }
