@@ -59,7 +59,7 @@ fillTable(byId("settings"), drawn, [
 ], row => row.pareto ? "on-front" : "");
 
 const range = (least, most) => `${least.toFixed(2)} to ${most.toFixed(2)}`;
-const untold = row => row.told_apart ? "" : "not significant";
+const significance = row => row.distinct ? "" : "not significant";
 
 const layers = metrics.fewer_layers;
 byId("layers-part").hidden = layers.length === 0;
@@ -69,7 +69,7 @@ fillTable(byId("layers"), layers, [
     ["time, ms", row => column(row.ms), row => row.ms],
     ["speed-up", row => column(row.speed_up), row => row.speed_up],
     ["by quartiles", row => range(row.speed_up_least, row.speed_up_most)],
-    ["", untold],
+    ["", significance],
     ["PSNR, dB", row => decibels(row.psnr_db), row => row.psnr_db],
     ["SSIM", row => row.ssim.toFixed(5), row => row.ssim],
 ]);
@@ -80,7 +80,7 @@ fillTable(byId("exact"), metrics.exact_methods, [
     ["time, ms", row => column(row.ms), row => row.ms],
     ["times as long as linked", row => row.times_linked.toFixed(2), row => row.times_linked],
     ["by quartiles", row => range(row.times_linked_least, row.times_linked_most)],
-    ["", row => row.method === "linked" ? "" : untold(row)],
+    ["", row => row.method === "linked" ? "" : significance(row)],
     ["MB", row => column(row.bytes / 1e6), row => row.bytes],
 ]);
 
