@@ -35,10 +35,10 @@ struct PictureErrors {
 ///
 /// 1. Survey draws the frame once with all layers in float, and finds for each pixel how far that can
 ///    be from the truth, and what of it packing, fewer layers or an early end would change.
-/// 2. BudgetSearch goes through settings_for(frame). A setting whose error is known from the survey to be
-///    too large is not drawn. The others are, cheapest first, against each other: those that a few
-///    draws show to be slower go, and of the rest those go that are over budget. Where times do not
-///    tell which of the rest is fastest, the plainest of them is chosen. The error of a setting is
+/// 2. BudgetSearch goes through settings_for(frame). Settings whose surveyed error is too large are
+///    not drawn. The others are drawn against each other, cheapest first: first the slower ones are
+///    removed, then those over budget. If times do not resolve which of the rest is fastest, the
+///    plainest of them is chosen. The error of a setting is
 ///    the bound that its method has for it (MethodInfo::bound) or, where that is too wide or there is
 ///    none, its difference from the survey's picture plus that picture's own bound. So what is
 ///    promised holds against the truth, and no reference on the CPU is needed.

@@ -64,7 +64,7 @@ struct NodeLayout {
     NodeField blend = {};        ///< Blend; 6 where a surface is left
     NodeField depth_range = {};  ///< two halves: how much 1 / depth grows a pixel, along x and y
 
-    /// The depth in a key. `needs` gives the range of quantised depths.
+    /// The depth in a key. `features` gives the range of quantised depths.
     [[nodiscard]] double depth_of(std::uint32_t key, const FrameFeatures& features) const;
     [[nodiscard]] DepthResolution depth_resolution(const FrameFeatures& features) const;
     /// How far a channel of a colour in a node is from the fragment's, at most.
