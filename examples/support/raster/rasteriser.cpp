@@ -197,22 +197,18 @@ std::string build_options(const cellist::Device& device) {
 }
 
 SetupKernels::SetupKernels(const cellist::Device& device, const Sampling& sampling)
-    : transform(device, setup_source(device, sampling), "raster_transform", cellist::type<View>,
-                cellist::type<RasterInstance>, cellist::type<RasterBatch>,
-                cellist::type<RasterVertex>, cellist::type<RasterTriangle>,
-                cellist::type<RasterBlock>, cellist::type<RasterCounts>),
-      bin(device, setup_source(device, sampling), "raster_bin", cellist::type<View>,
-          cellist::type<RasterInstance>, cellist::type<RasterBatch>, cellist::type<RasterVertex>,
-          cellist::type<RasterTriangle>, cellist::type<RasterBlock>, cellist::type<RasterCounts>) {}
+    : transform(make_kernel(device, setup_source(device, sampling), "raster_transform")),
+      bin(make_kernel(device, setup_source(device, sampling), "raster_bin")) {}
 
 cellist::Source Pass::pass_source(const cellist::Device& device, const Sampling& sampling,
                                   std::string_view source, const std::string& name,
-                                  const std::string& integer) {
-    return {.text = joined({"#pragma OPENCL FP_CONTRACT OFF", defines(device, sampling),
-                            integer == "long" ? "#define RASTER_WIDE" : "", kernels::definitions_h,
-                            kernels::triangle_clh, source, kernels::draw_clh}),
-            .file_name = name,
-            .options = build_options(device)};
+                                  EdgeBits edge_bits) {
+    return {
+        .text = joined({"#pragma OPENCL FP_CONTRACT OFF", defines(device, sampling),
+                        edge_bits == EdgeBits::wide ? "#define RASTER_WIDE" : "",
+                        kernels::definitions_h, kernels::triangle_clh, source, kernels::draw_clh}),
+        .file_name = name,
+        .options = build_options(device)};
 }
 
 // ---- Projection ------------------------------------------------------------------------------

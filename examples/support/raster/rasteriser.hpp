@@ -63,6 +63,17 @@ struct Sampling {
     bool depth_range = false;  ///< fragments have slopes of their depth
 };
 
+/// A kernel of the rasteriser. `uses` names the types of the pass, as in cellist::Kernel.
+template <class... Uses>
+[[nodiscard]] cellist::Kernel make_kernel(const cellist::Device& device,
+                                          const cellist::Source& source, const std::string& name,
+                                          const Uses&... uses) {
+    return cellist::Kernel(device, source, name, cellist::type<View>, cellist::type<RasterInstance>,
+                           cellist::type<RasterBatch>, cellist::type<RasterVertex>,
+                           cellist::type<RasterTriangle>, cellist::type<RasterBlock>,
+                           cellist::type<RasterCounts>, uses...);
+}
+
 /// The kernels that every drawing needs, built once for a device.
 struct SetupKernels {
     cellist::Kernel transform;
@@ -78,20 +89,18 @@ public:
     template <class... Uses>
     Pass(const cellist::Device& device, const Sampling& sampling, std::string_view source,
          const std::string& name, const Uses&... uses)
-        : small_(device, pass_source(device, sampling, source, name, "int"), "raster_draw_small",
-                 cellist::type<View>, cellist::type<RasterInstance>, cellist::type<RasterBatch>,
-                 cellist::type<RasterVertex>, cellist::type<RasterTriangle>,
-                 cellist::type<RasterBlock>, cellist::type<RasterCounts>, uses...),
-          blocks_(device, pass_source(device, sampling, source, name, "long"), "raster_draw_blocks",
-                  cellist::type<View>, cellist::type<RasterInstance>, cellist::type<RasterBatch>,
-                  cellist::type<RasterVertex>, cellist::type<RasterTriangle>,
-                  cellist::type<RasterBlock>, cellist::type<RasterCounts>, uses...) {}
+        : small_(make_kernel(device, pass_source(device, sampling, source, name, EdgeBits::narrow),
+                             "raster_draw_small", uses...)),
+          blocks_(make_kernel(device, pass_source(device, sampling, source, name, EdgeBits::wide),
+                              "raster_draw_blocks", uses...)) {}
 
 private:
     friend class Triangles;
+    // Edge functions of small triangles fit in 32 bits, those of large ones need 64.
+    enum class EdgeBits { narrow, wide };
     static cellist::Source pass_source(const cellist::Device& device, const Sampling& sampling,
                                        std::string_view source, const std::string& name,
-                                       const std::string& integer);
+                                       EdgeBits edge_bits);
     cellist::Kernel small_;
     cellist::Kernel blocks_;
 };
