@@ -126,7 +126,7 @@ public:
         source_.follow();
         source_.transform();
         do source_.prepare();
-        while (!source_.complete());
+        while (!source_.finish_or_grow());
         run();
         return read(Metrics(metrics_.download(), maxima(), sums()));
     }

@@ -187,9 +187,9 @@ void FragmentSource::finish() {
                       static_cast<cl_uint>(image_.size()));
 }
 
-bool FragmentSource::complete() {
-    const bool opaque = !opaque_ || !opaque_->passes || opaque_->passes->triangles.complete();
-    return transparent_.complete() && opaque;
+bool FragmentSource::finish_or_grow() {
+    const bool opaque = !opaque_ || !opaque_->passes || opaque_->passes->triangles.finish_or_grow();
+    return transparent_.finish_or_grow() && opaque;
 }
 
 cellist::Shape FragmentSource::shape() const {

@@ -43,9 +43,9 @@ public:
     /// Quality::reduce, the opaque depths are the caller's to write.
     void prepare();
 
-    /// Whether everything was drawn since prepare(). If not, there is room for it now, and the frame
-    /// begins again there. Blocks.
-    [[nodiscard]] bool complete();
+    /// Waits until everything is drawn since prepare(). False if something had no room: its buffers
+    /// have grown then, and the frame begins again at prepare().
+    [[nodiscard]] bool finish_or_grow();
 
     /// From now on, kernels over the pixels blend those of the slice alone: see Frame::memory_bytes.
     void set_slice(const cellist::Slice& slice);

@@ -96,7 +96,7 @@ void Reduction::follow() {
 void Reduction::prepare(const FragmentSource& transparent) {
     // The reduced frame begins with what is drawn here, so nothing may be missing.
     do source_.prepare();
-    while (!source_.complete());
+    while (!source_.finish_or_grow());
     source_.run_on_screen(backdrop_);
     if (const cellist::Buffer<cl_uint>* depths = source_.depth_bits())
         shrink_.run(pixels_of(reduced_), *depths, *transparent.depth_bits(),

@@ -80,7 +80,7 @@ public:
         source_.run_on_screen(*reader_, *fragments_);
     }
 
-    [[nodiscard]] bool complete() override {
+    [[nodiscard]] bool finish_or_grow() override {
         if (!has_fixed_capacity_) {
             if (may_fix_capacity_) last_lengths_ = fragments_->lengths();
             return true;

@@ -33,9 +33,9 @@ public:
     /// Makes the image, with kernels of the source over the pixels. Does not block.
     virtual void resolve() = 0;
 
-    /// Whether the image is whole. If not, there is room for what it lacks now, and store() begins
-    /// again. Blocks.
-    [[nodiscard]] virtual bool complete() { return true; }
+    /// Waits for the image. False if fragments had no room: the method makes room, and the frame begins
+    /// again at store().
+    [[nodiscard]] virtual bool finish_or_grow() { return true; }
 
     /// What the method keeps on the device, beside what the source has.
     [[nodiscard]] virtual std::uint64_t device_bytes() const = 0;

@@ -63,7 +63,7 @@ private:
     void transform();
     void store();
     void resolve();
-    [[nodiscard]] bool complete();
+    [[nodiscard]] bool finish_or_grow();
 
     const cellist::Device& device_;
     std::unique_ptr<Reduction> reduction_;  ///< where Quality::reduce asks for it

@@ -303,18 +303,18 @@ void Triangles::bin() {
                        blocks_, capacity_of(blocks_), p.views_, p.instances_, p.vertices_,
                        p.geometry_.positions(), p.geometry_.indices(), batches_);
     counted_ = counts_.download_async();
-    complete_.reset();
+    all_fitted_.reset();
 }
 
-bool Triangles::complete() {
-    if (complete_) return *complete_;
+bool Triangles::finish_or_grow() {
+    if (all_fitted_) return *all_fitted_;
     const RasterCounts counts = counted_.get().front();
-    complete_ = counts.triangles <= queue_.size() && counts.blocks <= blocks_.size();
+    all_fitted_ = counts.triangles <= queue_.size() && counts.blocks <= blocks_.size();
     if (counts.triangles > queue_.size())
         queue_ = cellist::Buffer<RasterTriangle>(device_, counts.triangles);
     if (counts.blocks > blocks_.size())
         blocks_ = cellist::Buffer<RasterBlock>(device_, counts.blocks);
-    return *complete_;
+    return *all_fitted_;
 }
 
 cellist::Range Triangles::triangles() const { return batches_range(batches_.size()); }

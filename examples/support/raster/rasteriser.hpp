@@ -148,9 +148,9 @@ public:
     /// Puts the large triangles and their blocks into queues. Does not block.
     void bin();
 
-    /// Whether the queues had room for all. If not, they have more now, and whoever has drawn since
-    /// bin() begins again there. Blocks.
-    [[nodiscard]] bool complete();
+    /// Waits for bin(). False if the queues had no room for all: they have grown then, and whoever
+    /// has drawn since bin() begins again there.
+    [[nodiscard]] bool finish_or_grow();
 
     /// Draws with a pass whose RASTER_TARGET takes `targets`. Does not block.
     template <class... Targets>
@@ -183,7 +183,7 @@ private:
     cellist::Buffer<RasterBlock> blocks_;
     cellist::Buffer<RasterCounts> counts_;
     cellist::Pending<std::vector<RasterCounts>> counted_;
-    std::optional<bool> complete_;  ///< since bin(), once it is known
+    std::optional<bool> all_fitted_;  ///< into the queues at the last bin(), once it is known
 };
 
 }  // namespace raster

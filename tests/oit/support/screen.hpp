@@ -65,7 +65,7 @@ static inline void raster_emit(RASTER_TARGET, const View* view,
         depths.fill(0);
         triangles.bin();
         triangles.draw(pass, counts, depths);
-    } while (!triangles.complete());
+    } while (!triangles.finish_or_grow());
     return {counts.download(), depths.download()};
 }
 
