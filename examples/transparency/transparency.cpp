@@ -32,8 +32,8 @@ Picture draw(const cellist::Device& device, const support::Mesh& mesh, const ras
                           "blend", fragments, cellist::type<Surface>);
     cellist::Buffer<cl_float4> image(device, width * height);
 
-    // Transform, rasterise and insert. finish_or_grow() is false if the rasteriser's queues were too
-    // short; they have grown then.
+    // Transform, rasterise and insert. finish_or_grow() is false if the rasteriser's queues were
+    // too short; they have grown then.
     projection.transform();
     do {
         triangles.bin();

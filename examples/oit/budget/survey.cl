@@ -1,18 +1,19 @@
 // One frame, with all layers in float, and what of it is how certain.
 //
-// Reads lists sorted by key, of fragments that are in front of the opaque surfaces or so little behind
-// them that float does not tell. Writes the image, and for each pixel
-//   uncertainty  xyz: how far the sRGB-encoded image is from the truth at most, where depths tell the
-//                order of all layers; w: by how much more where they do not
+// Reads lists sorted by key, of fragments that are in front of the opaque surfaces or so little
+// behind them that float does not tell. Writes the image, and for each pixel
+//   uncertainty  xyz: how far the sRGB-encoded image is from the truth at most, where depths tell
+//                the order of all layers; w: by how much more where they do not
 // metrics: see metrics.clh. The bounds are the largest errors of
 //   0        the image, apart from what depends on an order that float depths do not tell
 //   1        the image
 //   2 ...    OIT_FORMATS: of all layers in each packed format, as 0; infinite where none is known
 //   then     OIT_LAYER_COUNTS: of so many nearest layers, in float
 //   then     OIT_EPSILONS: of an end where no more than that part of the light passes
-// Then come as maxima: the light that passes behind so many layers, opacity, minus opacity, layers. And as
-// sums: pixels in which a depth of float, of 24 and of 16 bits does not tell an order that matters;
-// fragments; pixels by their number of layers, bin i for 2^(i - 1) and more, and bin 0 for none.
+// Then come as maxima: the light that passes behind so many layers, opacity, minus opacity, layers.
+// And as sums: pixels in which a depth of float, of 24 and of 16 bits does not tell an order that
+// matters; fragments; pixels by their number of layers, bin i for 2^(i - 1) and more, and bin 0 for
+// none.
 
 // The depths of nodes: float, 24 and 16 bits.
 #define OIT_DEPTHS_OF_NODES 3
@@ -33,7 +34,7 @@
 constant uint oit_layer_counts[] = {OIT_LAYER_COUNTS};
 constant float oit_epsilons[] = {OIT_EPSILONS};
 
-// ---- layers whose depths are closer than depths resolve -------------------------------------------
+// ---- layers whose depths are closer than depths resolve -----------------------------------------
 
 // So many layers in front of one are looked at one by one.
 #define OIT_WINDOW 4
@@ -69,7 +70,8 @@ static inline float oit_blend_difference(const OitBlend* a, const OitBlend* b, f
     return difference;
 }
 
-// How far apart two layers are in a sample, of which the first is in front at the mean of its samples.
+// How far apart two layers are in a sample, of which the first is in front at the mean of its
+// samples.
 #ifdef OIT_DEPTH_RANGE
 static inline float oit_reach(const OitFragment* fragment) {
     return fabs(fragment->slope_x) + fabs(fragment->slope_y);
@@ -152,7 +154,7 @@ static inline void oit_next_layer(OitOrder* order, const OitPixel* pixel,
     ++order->count;
 }
 
-// ---- errors ---------------------------------------------------------------------------------------
+// ---- errors -------------------------------------------------------------------------------------
 
 // How far the encoding of a value is from that of another which is off by `error` at most.
 static inline float oit_encoded_error(float value, float error) {
@@ -195,30 +197,32 @@ static inline void oit_add_packing(OitPacking* packing, const OitFrame* frame,
 // Bounds are known for what covers and what adds.
 #define OIT_HAS_PACKING_BOUND ((OIT_BLENDS & ~(1u << OIT_OVER | 1u << OIT_ADDITIVE)) == 0u)
 
-// How far the linear image is from the truth at most, where the order of its layers is right. shares: the
-// sum of the parts of their colours that layers add. u is 2^-24; see docs/numerics.md.
+// How far the linear image is from the truth at most, where the order of its layers is right.
+// shares: the sum of the parts of their colours that layers add. u is 2^-24; see docs/numerics.md.
 static inline float3 oit_rounding(const OitFrame* frame, float3 seen, uint layers, float shares,
                                   float brightest) {
-    // The shading of each layer by its share, and what is behind. Where surfaces cover, shares sum to 1.
+    // The shading of each layer by its share, and what is behind. Where surfaces cover, shares sum
+    // to 1.
     float3 error = OIT_SHADING_ERROR * frame->colour_max * fmax(shares, 1.0f);
-    // Blending, (3 n + 2) u of sums without a negative term; the mean of samples rounds up to 8 times more.
+    // Blending, (3 n + 2) u of sums without a negative term; the mean of samples rounds up to 8
+    // times more.
     error += seen * (0x1p-20f + 0x1p-22f * layers);
 #ifdef OIT_HAS_OPACITIES
     // Opacities of the corners are interpolated as depths are, to 8 u.
     error += 0x1p-21f * brightest * layers;
 #endif
 #ifdef OIT_ABSORBS
-    // Distances are differences of two depths, each off by 8 u of itself: 256 u, where extinction times
-    // depth is 16 at most.
+    // Distances are differences of two depths, each off by 8 u of itself: 256 u, where extinction
+    // times depth is 16 at most.
     error += 0x1p-16f * seen * layers;
 #endif
     return error;
 }
 
-// ---- the survey -----------------------------------------------------------------------------------
+// ---- the survey ---------------------------------------------------------------------------------
 
-// The samples of a fragment that are in front of the opaque surfaces; `close` gets those of which float
-// does not tell.
+// The samples of a fragment that are in front of the opaque surfaces; `close` gets those of which
+// float does not tell.
 static inline uint oit_surely_visible(OIT_SCREEN, const OitPixel* pixel,
                                       const OitResolution* resolution, const OitFragment* fragment,
                                       uint* close) {

@@ -26,8 +26,8 @@ constexpr std::array depths_of_nodes{NodeFormat::float32, NodeFormat::rgba8_d24c
 constexpr std::array<NodeFormat, packed_formats> packed{
     NodeFormat::rgba16f, NodeFormat::rgba8, NodeFormat::rgba8_d24c8, NodeFormat::rgb565_d16};
 
-// In float, of the brightest colour, and sRGB encoding in float. 2^-15 are the 512 * 2^-24 of shading
-// that docs/numerics.md derives.
+// In float, of the brightest colour, and sRGB encoding in float. 2^-15 are the 512 * 2^-24 of
+// shading that docs/numerics.md derives.
 constexpr std::string_view errors =
     "#define OIT_SHADING_ERROR 0x1p-15f\n#define OIT_ENCODING_ERROR 0x1p-19f\n";
 

@@ -24,13 +24,14 @@ namespace oit {
 inline constexpr cl_uint infinity_bits =
     std::bit_cast<cl_uint>(std::numeric_limits<cl_float>::infinity());
 
-/// What all methods have in common: projects a frame's scene, draws its opaque surfaces, and hands the
-/// transparent fragments in front of them to a method's pass; then kernels over the pixels make the
-/// image.
+/// What all methods have in common: projects a frame's scene, draws its opaque surfaces, and hands
+/// the transparent fragments in front of them to a method's pass; then kernels over the pixels make
+/// the image.
 class FragmentSource {
 public:
-    /// Refers to the device and the frame, which must outlive it. Throws InputError where the user's
-    /// blend function does not compile, cellist::Error where the device cannot hold the image.
+    /// Refers to the device and the frame, which must outlive it. Throws InputError where the
+    /// user's blend function does not compile, cellist::Error where the device cannot hold the
+    /// image.
     FragmentSource(const cellist::Device& device, const Frame& frame);
 
     /// The frame has another time, or other views of the same size. Blocks.
@@ -47,11 +48,13 @@ public:
     /// have grown then, and the frame begins again at prepare().
     [[nodiscard]] bool finish_or_grow();
 
-    /// From now on, kernels over the pixels blend those of the slice alone: see Frame::memory_bytes.
+    /// From now on, kernels over the pixels blend those of the slice alone: see
+    /// Frame::memory_bytes.
     void set_slice(const cellist::Slice& slice);
 
     /// The kernels of a pass: `source` defines OIT_TARGET, OIT_TARGET_PASS and oit_store (see
-    /// surface.clh), where OIT_PASS is defined. `uses` are containers and types, as in cellist::Kernel.
+    /// surface.clh), where OIT_PASS is defined. `uses` are containers and types, as in
+    /// cellist::Kernel.
     template <class... Uses>
     [[nodiscard]] raster::Pass pass(std::string_view source, const std::string& file_name,
                                     const Uses&... uses) const {
@@ -116,11 +119,12 @@ public:
     }
     /// Width, height and eyes: a cell for each pixel.
     [[nodiscard]] cellist::Shape shape() const;
-    /// The linear image, eye by eye, row by row from the top. With Quality::reduce, two vectors a pixel:
-    /// what the transparent surfaces add, and the part of the light behind that they let pass.
+    /// The linear image, eye by eye, row by row from the top. With Quality::reduce, two vectors a
+    /// pixel: what the transparent surfaces add, and the part of the light behind that they let
+    /// pass.
     [[nodiscard]] const cellist::Buffer<cl_float4>& image() const { return image_; }
-    /// The least depth of the opaque surfaces in each sample, as the bits of floats; null where there are
-    /// none.
+    /// The least depth of the opaque surfaces in each sample, as the bits of floats; null where
+    /// there are none.
     [[nodiscard]] const cellist::Buffer<cl_uint>* depth_bits() const {
         return opaque_ ? &opaque_->depth_bits : nullptr;
     }

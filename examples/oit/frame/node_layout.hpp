@@ -30,9 +30,9 @@ OIT_DEFINE_NODE(6);
 OIT_DEFINE_NODE(7);
 #undef OIT_DEFINE_NODE
 
-/// The device resolves two depths if they differ by more than this part of the greater
-/// one. The device's depth is off by a factor of at most 1 +- 8 * 2^-24 (see triangle.clh); two of them
-/// by twice that.
+/// The device resolves two depths if they differ by more than this part of the greater one. The
+/// device's depth is off by a factor of at most 1 +- 8 * 2^-24 (see triangle.clh); two of them by
+/// twice that.
 inline constexpr double depth_resolution = 16.0 / (1 << 24);
 
 /// Some bits of a word of a node.
@@ -52,8 +52,8 @@ struct DepthResolution {
     }
 };
 
-/// What lies where in the nodes of a frame. Colour and depth lie where the format says; members that
-/// only some frames need fill what room the format leaves, or words of their own.
+/// What lies where in the nodes of a frame. Colour and depth lie where the format says; members
+/// that only some frames need fill what room the format leaves, or words of their own.
 struct NodeLayout {
     NodeFormat format = NodeFormat::float32;
     DepthScale depth_scale = DepthScale::linear;

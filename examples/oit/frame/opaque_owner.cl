@@ -1,5 +1,5 @@
-// Pass: of the pieces of opaque triangles at the least depth of a sample, the first. Filled with the greatest
-// number before.
+// Pass: of the pieces of opaque triangles at the least depth of a sample, the first. Filled with
+// the greatest number before.
 #define RASTER_TARGET volatile global uint *owners, global const uint *depth_bits
 #define RASTER_TARGET_PASS owners, depth_bits
 

@@ -12,7 +12,8 @@ raster::View reduced_view(const raster::View& view, int block) {
     reduced.width = (view.width + block - 1) / block;
     reduced.height = (view.height + block - 1) / block;
     const auto scale_row = [&](cl_float(&row)[4], int side, int reduced_side) {
-        // Clip coordinates are relative to the middle of the image, which moves if blocks stand out.
+        // Clip coordinates are relative to the middle of the image, which moves if blocks stand
+        // out.
         const double shift =
             0.5 * RASTER_SUBPIXELS * (static_cast<double>(side) / block - reduced_side);
         for (int i = 0; i < 4; ++i)

@@ -1,8 +1,8 @@
-// Adaptive transparency (Salvi, Montgomery, Lefohn, HPG 2011): how much light reaches a depth is kept as
-// a step function of at most OIT_STEPS steps; where there are more, the one goes whose loss changes the
-// area under the function least. Fragments come from lists sorted by key, so that the image does not
-// depend on the order in which they were inserted. Fragments at one depth make one step, and are
-// blended in their order, as if they were one fragment.
+// Adaptive transparency (Salvi, Montgomery, Lefohn, HPG 2011): how much light reaches a depth is
+// kept as a step function of at most OIT_STEPS steps; where there are more, the one goes whose loss
+// changes the area under the function least. Fragments come from lists sorted by key, so that the
+// image does not depend on the order in which they were inserted. Fragments at one depth make one
+// step, and are blended in their order, as if they were one fragment.
 
 // Behind depth[i], the part passes[i] of the light comes through; ascending.
 typedef struct {
@@ -40,7 +40,8 @@ static inline void oit_limit(OitSteps* steps) {
     --steps->count;
 }
 
-// A fragment behind all so far, or at the depth of the last. That step is whole before one has to go.
+// A fragment behind all so far, or at the depth of the last. That step is whole before one has to
+// go.
 static inline void oit_step(OitSteps* steps, const OitFragment* fragment) {
     float passes = 1.0f;
     if (steps->count > 0) {

@@ -1,14 +1,14 @@
-// Bucket depth peeling: each pass takes the nearest layer of each of OIT_BUCKETS ranges of depth. Behind
-// a range with more than one layer the order of the others is not known, so what is behind it is taken
-// again by the next passes, which divide what is left anew.
+// Bucket depth peeling: each pass takes the nearest layer of each of OIT_BUCKETS ranges of depth.
+// Behind a range with more than one layer the order of the others is not known, so what is behind
+// it is taken again by the next passes, which divide what is left anew.
 //   begin    a pixel's key that everything in front of has been blended; OIT_LAST_KEY at the end
 //   range    least and greatest depth of what is left, as bits of floats
 //   buckets  least key of each range of depth
 //   counts   fragments in each
 //   nodes    the layers that were taken
 //   state    what has been blended
-// The passes: with OIT_FIND_RANGE; then alternately with OIT_FIND_KEYS and with neither, which takes
-// the layers.
+// The passes: with OIT_FIND_RANGE; then alternately with OIT_FIND_KEYS and with neither, which
+// takes the layers.
 
 static inline uint oit_bucket(float depth, float least, float greatest) {
     const float part = (depth - least) / fmax(greatest - least, 1e-30f);

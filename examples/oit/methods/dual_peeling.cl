@@ -1,5 +1,5 @@
-// Dual depth peeling: each pass takes the nearest and the farthest layer that are left. A pixel has two
-// of each: what is in front, then what is behind.
+// Dual depth peeling: each pass takes the nearest and the farthest layer that are left. A pixel has
+// two of each: what is in front, then what is behind.
 //   current  keys of the layers that this pass takes; OIT_FIRST_KEY and OIT_LAST_KEY at the start
 //   next     least and greatest key between them
 //   nodes    the layers that were taken

@@ -39,9 +39,10 @@ ListReader reader_of(const Quality& quality, const std::optional<ListReader>& re
     return blending_reader(quality, define("OIT_NEAREST", *quality.layers));
 }
 
-// The device is waited for where the length of the lists is not known: in the first frame, and in others that
-// have more fragments than fit. All further ones are enqueued at once, into a pool with room for
-// somewhat more fragments than the first had; or drawn as the first, where there is no such room.
+// The device is waited for where the length of the lists is not known: in the first frame, and in
+// others that have more fragments than fit. All further ones are enqueued at once, into a pool with
+// room for somewhat more fragments than the first had; or drawn as the first, where there is no
+// such room.
 template <class Node>
 class ListMethod : public Method {
 public:

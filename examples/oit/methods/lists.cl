@@ -1,5 +1,5 @@
-// The methods that keep every fragment in a list of its pixel, whatever the storage (Yang et al. 2010,
-// section 4.1). A container of shape width x height, or width x height x eyes.
+// The methods that keep every fragment in a list of its pixel, whatever the storage (Yang et al.
+// 2010, section 4.1). A container of shape width x height, or width x height x eyes.
 
 #ifdef OIT_PASS
 #define OIT_TARGET CELLIST_LISTS(OIT_NODE, fragments)
@@ -16,8 +16,8 @@ static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitLocatio
 // Blends each pixel's fragments front to back over what is behind them.
 //
 // The lists are sorted by key. With OIT_NEAREST=K they need not be, and the K nearest fragments of
-// each are blended; OIT_LAYERS=K stops after the first K of a sorted list. With OIT_SORTED=N they need
-// not be sorted either, and *longer becomes 1 where one has N fragments or more.
+// each are blended; OIT_LAYERS=K stops after the first K of a sorted list. With OIT_SORTED=N they
+// need not be sorted either, and *longer becomes 1 where one has N fragments or more.
 #ifdef OIT_SORTED
 #define OIT_NEAREST OIT_SORTED
 #define OIT_LONGER , global uint* longer

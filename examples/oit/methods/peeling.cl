@@ -1,5 +1,6 @@
 // Depth peeling. A pixel has
-//   current  key of the layer that this pass takes; OIT_FIRST_KEY at the start, OIT_LAST_KEY at the end
+//   current  key of the layer that this pass takes; OIT_FIRST_KEY at the start, OIT_LAST_KEY at
+//            the end
 //   next     least key behind it
 //   nodes    the layer that was taken
 //   state    what has been blended

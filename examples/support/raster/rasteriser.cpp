@@ -16,9 +16,9 @@ namespace {
 constexpr std::size_t batch_size = 64;         // RASTER_BATCH in triangle.clh
 constexpr std::size_t first_capacity = 16384;  // of the queues
 
-// What suits a device. On GPUs a work-item scans no more than tiny triangles alone, and the blocks of others
-// are shared by a work-item for each pixel; on CPUs a work-item is a loop of a thread, and what it
-// saves is the setup of triangles.
+// What suits a device. On GPUs a work-item scans no more than tiny triangles alone, and the blocks
+// of others are shared by a work-item for each pixel; on CPUs a work-item is a loop of a thread,
+// and what it saves is the setup of triangles.
 struct Tuning {
     int small_pixels;
     int block_pixels;
@@ -113,8 +113,9 @@ void append_batches(std::vector<RasterBatch>& batches, std::size_t instance, cl_
                            first + begin + std::min(size, count - begin)});
 }
 
-// Under PoCL, a thread takes many consecutive groups at a time. Sixteenths of the batches are therefore
-// interleaved, in the order of their reversed bits: no thread gets all of a dense part of a mesh.
+// Under PoCL, a thread takes many consecutive groups at a time. Sixteenths of the batches are
+// therefore interleaved, in the order of their reversed bits: no thread gets all of a dense part of
+// a mesh.
 std::vector<RasterBatch> in_order_for(const cellist::Device& device,
                                       std::vector<RasterBatch> batches) {
     if (device.info().type == CL_DEVICE_TYPE_GPU) return batches;

@@ -136,8 +136,8 @@ private:
     cellist::Buffer<RasterVertex> vertices_;
 };
 
-/// The triangles of some of the instances: divides the large ones into blocks of pixels, and draws all
-/// any number of times.
+/// The triangles of some of the instances: divides the large ones into blocks of pixels, and draws
+/// all any number of times.
 class Triangles {
 public:
     /// `chosen` are indices of the projection's instances. Refers to the projection, which must

@@ -63,8 +63,8 @@ struct RasterVertex {
 };
 CELLIST_STRUCT(RasterVertex, x, y, w, outside);
 
-/// A triangle on the screen, or a piece of a clipped one, ready to be scanned: oriented so that its edge
-/// functions are positive inside.
+/// A triangle on the screen, or a piece of a clipped one, ready to be scanned: oriented so that its
+/// edge functions are positive inside.
 struct RasterTriangle {
     cl_int x[3], y[3];      ///< corners in sub-pixels
     cl_float inverse_w[3];  ///< 1 / w of the corners; w until raster_invert()
