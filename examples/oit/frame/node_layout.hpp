@@ -67,10 +67,6 @@ struct NodeLayout {
     /// The depth in a key. `features` gives the range of quantised depths.
     [[nodiscard]] double depth_of(std::uint32_t key, const FrameFeatures& features) const;
     [[nodiscard]] DepthResolution depth_resolution(const FrameFeatures& features) const;
-    /// How far a channel of a colour in a node is from the fragment's, at most.
-    [[nodiscard]] double colour_error(const FrameFeatures& features) const;
-    /// The same for an opacity.
-    [[nodiscard]] double alpha_error() const;
 };
 
 [[nodiscard]] NodeLayout node_layout(const Quality& quality, const FrameFeatures& features);

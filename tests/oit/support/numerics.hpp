@@ -14,6 +14,7 @@
 
 #include "camera.hpp"
 #include "methods/renderer.hpp"
+#include "oit/support/node_errors.hpp"
 #include "reference/comparison.hpp"
 #include "reference/reference.hpp"
 #include "scene/scenes.hpp"
@@ -63,9 +64,9 @@ inline double colour_bound(const oit::Renderer& renderer, std::uint64_t layers) 
     const auto n = static_cast<double>(layers);
     const double shading = 512 * unit, blending = (3 * n + 2) * unit;
     return shading + blending +
-           renderer.layout().colour_error(renderer.features()) /
+           colour_error(renderer.layout(), renderer.features()) /
                static_cast<double>(renderer.features().colour_max) +
-           n * renderer.layout().alpha_error();
+           n * alpha_error(renderer.layout());
 }
 
 /// What a pixel changes by, at most, if all layers whose order the format does not know change
