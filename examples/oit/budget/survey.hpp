@@ -40,6 +40,8 @@ public:
 
 private:
     class Drawing;
+    template <class Node>
+    class ListDrawing;
     std::unique_ptr<Drawing> drawing_;
 };
 
