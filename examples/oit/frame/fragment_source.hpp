@@ -68,14 +68,8 @@ public:
     /// Enqueues a pass over all transparent fragments; `targets` are those of OIT_TARGET.
     template <class... Targets>
     void draw(raster::Pass& pass, const Targets&... targets) {
-        with(tints_, [&](const auto&... tints) {
-            with(opacities_, [&](const auto&... opacities) {
-                with(depth_bits(), [&](const auto&... depths) {
-                    transparent_.draw(pass, targets..., constants_, materials_, geometry_.normals(),
-                                      tints..., opacities..., depths...);
-                });
-            });
-        });
+        transparent_.draw(pass, targets..., constants_, materials_, geometry_.normals(), tints_,
+                          opacities_, opaque_ ? opaque_->depth_bits : no_depth_bits_);
     }
 
     /// A kernel over the pixels: its last parameters are OIT_SCREEN (see blend.clh).
@@ -151,15 +145,6 @@ private:
         explicit Opaque(const FragmentSource& source);
     };
 
-    // Calls use() with a buffer, or without it where it is not there.
-    template <class Optional, class Use>
-    static void with(const Optional& buffer, const Use& use) {
-        if (buffer)
-            use(*buffer);
-        else
-            use();
-    }
-
     [[nodiscard]] raster::Sampling sampling() const;
     // The parts, after the macros that they name.
     [[nodiscard]] std::string with_defines(std::initializer_list<std::string_view> parts) const;
@@ -178,9 +163,10 @@ private:
     raster::Projection projection_;
     raster::Triangles transparent_;
     cellist::Buffer<Material> materials_;
-    // Of vertices, as geometry_ has them.
-    std::optional<cellist::Buffer<cl_float>> opacities_;
-    std::optional<cellist::Buffer<cl_float>> tints_;  ///< 3 each
+    // Of vertices, as geometry_ has them. One float, which no kernel reads, if no model has any.
+    cellist::Buffer<cl_float> opacities_;
+    cellist::Buffer<cl_float> tints_;         ///< 3 each
+    cellist::Buffer<cl_uint> no_depth_bits_;  ///< stands in for those of Opaque
     std::unique_ptr<Opaque> opaque_;
     cellist::Range screen_;
     cellist::Buffer<cl_float4> image_;

@@ -2,9 +2,8 @@
 #define RASTER_TARGET                                                                              \
     global const uint *owners, global const uint *depth_bits, global float4 *colour,               \
         const OitFrame kernel_frame, global const Material *materials,                             \
-        global const float *normals OIT_TINTS
-#define RASTER_TARGET_PASS                                                                         \
-    owners, depth_bits, colour, kernel_frame, materials, normals OIT_TINTS_PASS
+        global const float *normals, global const float *tints
+#define RASTER_TARGET_PASS owners, depth_bits, colour, kernel_frame, materials, normals, tints
 
 static inline void raster_emit(RASTER_TARGET, const View* view,
                                global const RasterInstance* instance, uint piece,
@@ -23,9 +22,9 @@ static inline void raster_emit(RASTER_TARGET, const View* view,
         shaded = oit_shade_floor(&frame.lighting, view, covered->x, covered->y);
     } else {
         const float3 normal = oit_normal(instance, covered, normals);
-        shaded = oit_shade_surface(&frame.lighting, oit_tint(&material, covered OIT_TINTS_PASS),
-                                   material.gloss, normal, covered->front,
-                                   oit_ray(view, covered->x, covered->y));
+        shaded =
+            oit_shade_surface(&frame.lighting, oit_tint(&material, covered, tints), material.gloss,
+                              normal, covered->front, oit_ray(view, covered->x, covered->y));
     }
     for (int s = 0; s < OIT_SAMPLES; ++s)
         if (owned >> s & 1) colour[pixel * OIT_SAMPLES + s] = (float4)(shaded, 1.0f);
