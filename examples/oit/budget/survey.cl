@@ -253,6 +253,48 @@ static inline float oit_passes(const OitBlendState* blended) {
     return most;
 }
 
+// The brightest light that can come from behind a layer, and where the last surface is.
+static inline float oit_light_from_behind(CELLIST_LISTS(OIT_NODE, fragments), OIT_SCREEN,
+                                          const OitPixel* pixel, uint cell, float* last_depth) {
+    float brightest = 0.0f, added = 0.0f;
+    *last_depth = 0.0f;
+    for (int i = 0; i < OIT_BLENDED_SAMPLES; ++i) {
+        float depth;
+        brightest = fmax(brightest, oit_brightest(oit_behind(OIT_SCREEN_PASS, pixel, i, &depth)));
+        if (depth < INFINITY) *last_depth = fmax(*last_depth, depth);
+    }
+    cellist_for_each(fragments, cell, node) {
+        const OitFragment fragment = oit_unpack(&pixel->frame, cellist_get(fragments, node));
+        *last_depth = fmax(*last_depth, fragment.depth);
+        if (oit_blends(&fragment, OIT_ADDITIVE) || oit_blends(&fragment, OIT_USER))
+            added += fragment.alpha * oit_brightest(fragment.colour);
+        else if (oit_blends(&fragment, OIT_OVER))
+            brightest = fmax(brightest, oit_brightest(fragment.colour));
+    }
+    return brightest + added;
+}
+
+// What a pixel shows after so many layers, and after so little light: see OIT_CUTS.
+typedef struct {
+    float3 seen[OIT_CUTS];
+    float passes[OIT_LAYER_COUNT];  // the light that passes behind so many layers
+    uint reached;                   // a bit for each cut
+} OitCuts;
+
+// Keeps what the pixel shows in front of its next layer, for the cuts that end there.
+static inline void oit_cut(OitCuts* cuts, OIT_SCREEN, const OitPixel* pixel,
+                           const OitBlendState* blended, uint layers, float passes) {
+    for (int i = 0; i < OIT_CUTS; ++i) {
+        if (cuts->reached >> i & 1) continue;
+        if (i < OIT_LAYER_COUNT ? layers != oit_layer_counts[i]
+                                : passes > oit_epsilons[i - OIT_LAYER_COUNT])
+            continue;
+        cuts->reached |= 1u << i;
+        cuts->seen[i] = oit_mean_seen(OIT_SCREEN_PASS, pixel, blended);
+        if (i < OIT_LAYER_COUNT) cuts->passes[i] = passes;
+    }
+}
+
 kernel void oit_survey(CELLIST_LISTS(OIT_NODE, fragments), const OitResolution resolution,
                        global float4* uncertainty, global float* metrics, OIT_SCREEN) {
     local float shared[OIT_GROUP * OIT_METRICS];
@@ -261,23 +303,9 @@ kernel void oit_survey(CELLIST_LISTS(OIT_NODE, fragments), const OitResolution r
     if (oit_pixel(OIT_SCREEN_PASS, &pixel)) {
         const uint cell = cellist_cell3(fragments, pixel.x, pixel.y, pixel.eye);
 
-        // The brightest light that can come from behind a layer, and where the last surface is.
-        float brightest = 0.0f, added = 0.0f, last_depth = 0.0f;
-        for (int i = 0; i < OIT_BLENDED_SAMPLES; ++i) {
-            float depth;
-            brightest =
-                fmax(brightest, oit_brightest(oit_behind(OIT_SCREEN_PASS, &pixel, i, &depth)));
-            if (depth < INFINITY) last_depth = fmax(last_depth, depth);
-        }
-        cellist_for_each(fragments, cell, node) {
-            const OitFragment fragment = oit_unpack(&pixel.frame, cellist_get(fragments, node));
-            last_depth = fmax(last_depth, fragment.depth);
-            if (oit_blends(&fragment, OIT_ADDITIVE) || oit_blends(&fragment, OIT_USER))
-                added += fragment.alpha * oit_brightest(fragment.colour);
-            else if (oit_blends(&fragment, OIT_OVER))
-                brightest = fmax(brightest, oit_brightest(fragment.colour));
-        }
-        brightest += added;
+        float last_depth;
+        const float brightest = oit_light_from_behind(CELLIST_PASS(fragments), OIT_SCREEN_PASS,
+                                                      &pixel, cell, &last_depth);
 
         OitBlendState blended = oit_blend_state();
         OitOrder order;
@@ -289,10 +317,10 @@ kernel void oit_survey(CELLIST_LISTS(OIT_NODE, fragments), const OitResolution r
             packing.colour[i] = 0.0f;
             packing.alpha[i] = 0.0f;
         }
-        float3 cut[OIT_CUTS];
-        float behind[OIT_LAYER_COUNT];
-        for (int i = 0; i < OIT_LAYER_COUNT; ++i) behind[i] = 0.0f;
-        uint is_cut = 0, layers = 0;
+        OitCuts cuts;
+        cuts.reached = 0;
+        for (int i = 0; i < OIT_LAYER_COUNT; ++i) cuts.passes[i] = 0.0f;
+        uint layers = 0;
         float shares = 0.0f;
         float hidden = 0.0f;  // by opaque surfaces, or not
         cellist_for_each(fragments, cell, node) {
@@ -311,15 +339,7 @@ kernel void oit_survey(CELLIST_LISTS(OIT_NODE, fragments), const OitResolution r
             fragment.coverage = sure;
 
             const float passes = oit_passes(&blended);
-            for (int i = 0; i < OIT_CUTS; ++i) {
-                if (is_cut >> i & 1) continue;
-                if (i < OIT_LAYER_COUNT ? layers != oit_layer_counts[i]
-                                        : passes > oit_epsilons[i - OIT_LAYER_COUNT])
-                    continue;
-                is_cut |= 1u << i;
-                cut[i] = oit_mean_seen(OIT_SCREEN_PASS, &pixel, &blended);
-                if (i < OIT_LAYER_COUNT) behind[i] = passes;
-            }
+            oit_cut(&cuts, OIT_SCREEN_PASS, &pixel, &blended, layers, passes);
             oit_next_layer(&order, &pixel, &resolution, &blended, &fragment, brightest, last_depth);
             oit_add_packing(&packing, &pixel.frame, &fragment, passes, brightest);
             shares += passes * fragment.alpha;
@@ -353,10 +373,11 @@ kernel void oit_survey(CELLIST_LISTS(OIT_NODE, fragments), const OitResolution r
                           oit_encoded_error3(seen, error) + OIT_ENCODING_ERROR);
         }
         for (int i = 0; i < OIT_CUTS; ++i) {
-            const float3 error = is_cut >> i & 1 ? fabs(oit_srgb3(cut[i]) - encoded) : 0.0f;
+            const float3 error =
+                cuts.reached >> i & 1 ? fabs(oit_srgb3(cuts.seen[i]) - encoded) : 0.0f;
             oit_add_bound(&own, OIT_FIRST_LAYERS + i, error + certain);
         }
-        for (int i = 0; i < OIT_LAYER_COUNT; ++i) own.most[OIT_LIGHT_BEHIND + i] = behind[i];
+        for (int i = 0; i < OIT_LAYER_COUNT; ++i) own.most[OIT_LIGHT_BEHIND + i] = cuts.passes[i];
         own.most[OIT_LONGEST] = (float)layers;
         own.sum[OIT_UNRESOLVED] = float_order > 0.0f;
         for (int kind = 1; kind < OIT_DEPTHS_OF_NODES; ++kind)
