@@ -15,9 +15,8 @@ std::vector<SceneInfo>& table() {
 
 SceneRegistration::SceneRegistration(const SceneInfo& info) {
     std::vector<SceneInfo>& scenes = table();
-    const auto after = std::find_if(scenes.begin(), scenes.end(), [&](const SceneInfo& other) {
-        return other.name > info.name;
-    });
+    const auto after = std::find_if(scenes.begin(), scenes.end(),
+                                    [&](const SceneInfo& other) { return other.name > info.name; });
     scenes.insert(after, info);
 }
 
