@@ -39,8 +39,8 @@ struct FrameOptions {
     std::vector<std::string> arguments = {};  ///< of the program, for its report
 };
 
-/// Adds these options to a command line, which reads and checks them: options whose argument cannot be
-/// used, or has no effect, throw InputError. Refers to both until the line is parsed.
+/// Adds these options to a command line, which reads and checks them: options whose argument cannot
+/// be used, or has no effect, throw InputError. Refers to both until the line is parsed.
 void add_frame_options(support::CommandLine& line, FrameOptions& options);
 
 /// The text of --blend; empty where the scene decides.
@@ -52,19 +52,19 @@ struct NamedFile {
     std::filesystem::path path;  ///< may be empty where nothing is to be written
 };
 
-/// Throws InputError unless a file can be written at each path that is not empty, and none of them is
-/// another one, or one that the options read.
+/// Throws InputError unless a file can be written at each path that is not empty, and none of them
+/// is another one, or one that the options read.
 void check_outputs(const FrameOptions& options, std::span<const NamedFile> outputs);
 
 /// For the end of a help text: all methods and scenes.
 [[nodiscard]] std::string help_on_tables();
 
-/// The device that the options ask for, or Device::choose(). Throws InputError where it cannot hold an
-/// image of their size.
+/// The device that the options ask for, or Device::choose(). Throws InputError where it cannot hold
+/// an image of their size.
 [[nodiscard]] cellist::Device choose_device(const FrameOptions& options);
 
-/// A mesh file of a command line: MESH[:ALPHA]. If the whole argument is the name of a file, the text
-/// after its last colon is not an opacity.
+/// A mesh file of a command line: MESH[:ALPHA]. If the whole argument is the name of a file, the
+/// text after its last colon is not an opacity.
 struct MeshFile {
     std::filesystem::path path;
     std::optional<float> alpha;
@@ -79,7 +79,8 @@ struct MeshFile {
 /// moves.
 [[nodiscard]] Scene make_scene(const FrameOptions& options);
 
-/// Adds the floor that the options ask for, if the eye is above it: from below, it would hide the scene.
+/// Adds the floor that the options ask for, if the eye is above it: from below, it would hide the
+/// scene.
 void stand_on_floor(Scene& scene, const FrameOptions& options);
 
 /// Throws InputError, which begins with `option`, where time changes nothing in the scene.

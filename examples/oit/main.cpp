@@ -60,12 +60,14 @@ void write_picture(const oit::Options& options, const oit::Frame& frame,
                          oit::picture_width(frame), frame.height());
 }
 
-using Drawn = std::pair<double, const oit::Renderer*>;
+struct TimedImage {
+    double milliseconds;
+    const oit::Renderer* renderer;  ///< that has the image
+};
 
-// Calls draw() for each moment, which says how many milliseconds it took and who has the image. Writes
-// the pictures of all frames where their name has a number.
+// Calls draw() for each moment. Writes the pictures of all frames if their name has a number.
 std::vector<double> draw_frames(oit::Frame& frame, const oit::Options& options,
-                                const std::function<Drawn()>& draw) {
+                                const std::function<TimedImage()>& draw) {
     support::Progress progress("drawing");
     progress.update(0);
     std::vector<double> frames;
@@ -127,7 +129,7 @@ void draw_with_method(oit::Report& report, oit::Renderer& renderer, oit::Frame& 
     renderer.warm_up();
     const bool changes = report.options.moves();
     report.times.add(draw_frames(frame, report.options, [&] {
-        return Drawn(changes ? renderer.draw_changed() : renderer.draw(), &renderer);
+        return TimedImage{changes ? renderer.draw_changed() : renderer.draw(), &renderer};
     }));
     report.passes = draw_passes(renderer, report.options.frames);
 }
@@ -137,7 +139,7 @@ void draw_within_budget(oit::Report& report, oit::BudgetController& controller, 
     report.times.add(draw_frames(frame, report.options, [&] {
         const oit::BudgetController::Drawn drawn = controller.draw();
         record.add(drawn, frame.time, *report.options.budget);
-        return Drawn(drawn.frame_ms, &controller.renderer());
+        return TimedImage{drawn.frame_ms, &controller.renderer()};
     }));
     report.passes = draw_passes(controller.renderer(), report.options.frames);
     report.choice = controller.choice();
@@ -201,7 +203,7 @@ int run(const oit::Options& options) {
         device, frame, *options.budget, options.check_every,
         {.progress = show_choosing, .seconds = options.search_seconds});
     draw_within_budget(report, controller, frame);
-    // The reference is that of all layers.
+    // `frame` keeps its own quality, so the reference has all layers.
     write(report, frame, controller.renderer());
     return report.record.met() ? 0 : 2;
 }

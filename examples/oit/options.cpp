@@ -132,19 +132,8 @@ void refuse_idle_options(const support::CommandLine& line, const Options& option
     line.refuse_idle(table);
 }
 
-}  // namespace
-
-bool Options::writes_to_stdout() const {
-    return std::ranges::any_of(std::array{out.of(1), write_reference, write_difference, json},
-                               support::is_standard_output);
-}
-
-Options parse_options(int count, const char* const* arguments) {
+void add_quality_options(support::CommandLine& line, Options& options) {
     using Text = const std::string&;
-    Options options;
-    support::CommandLine line("cellist-oit",
-                              "Draws a mesh or a scene with order-independent transparency.");
-    add_frame_options(line, options);
     line.add("--method", options.method, "transparency method, from the list below", "M[:SIZE]",
              [&](Text text) { read_method(text, options); });
     line.add("--layers", "all", "nearest layers to blend", "K|all",
@@ -163,6 +152,10 @@ Options parse_options(int count, const char* const* arguments) {
     line.add("--memory", "",
              "limit on the device memory of the method, such as 64MiB; lists are drawn in slices",
              "BYTES", [&](Text text) { read_memory(text, options); });
+}
+
+void add_budget_options(support::CommandLine& line, Options& options, bool& strict) {
+    using Text = const std::string&;
     line.add("--budget", "",
              "find the cheapest setting with at least this PSNR, or at most this error",
              "40dB|1/255", [&](Text text) { options.budget = parse_budget(text); });
@@ -173,10 +166,13 @@ Options parse_options(int count, const char* const* arguments) {
                  options.search_seconds = support::read_between("--search-seconds", text, 0, 1e6,
                                                                 "seconds from 0 to 1000000");
              });
-    bool strict = false;
     line.add_flag("--strict", strict,
                   "also apply the budget to undecided pixels, where float depths do not tell the "
                   "order of layers");
+}
+
+void add_motion_options(support::CommandLine& line, Options& options) {
+    using Text = const std::string&;
     line.add("--until", "", "time of the last frame, in seconds; the first is at --time", "T",
              [&](Text text) {
                  options.until = support::read_between("--until", text, -1e6, 1e6,
@@ -187,6 +183,10 @@ Options parse_options(int count, const char* const* arguments) {
                  options.turn_degrees = support::read_between("--turn", text, -1e6, 1e6,
                                                               "degrees from -1000000 to 1000000");
              });
+}
+
+void add_output_options(support::CommandLine& line, Options& options) {
+    using Text = const std::string&;
     line.add_flag("--reference", options.reference,
                   "compare with a rendering in double precision on the CPU");
     line.add("--out", options.out.path().string(),
@@ -203,6 +203,25 @@ Options parse_options(int count, const char* const* arguments) {
     line.add_text("--json", options.json, "write the metrics to this file", "FILE");
     line.add_number("--frames", options.frames, 1, 1'000'000,
                     "timed frames, after a warm-up; times are medians");
+}
+
+}  // namespace
+
+bool Options::writes_to_stdout() const {
+    return std::ranges::any_of(std::array{out.of(1), write_reference, write_difference, json},
+                               support::is_standard_output);
+}
+
+Options parse_options(int count, const char* const* arguments) {
+    Options options;
+    bool strict = false;
+    support::CommandLine line("cellist-oit",
+                              "Draws a mesh or a scene with order-independent transparency.");
+    add_frame_options(line, options);
+    add_quality_options(line, options);
+    add_budget_options(line, options, strict);
+    add_motion_options(line, options);
+    add_output_options(line, options);
     line.add_check([&] {
         if (options.budget) options.budget->strict = strict;
         check_outputs(options);

@@ -34,8 +34,8 @@ struct Options : FrameOptions {
     std::string help_text = {};  ///< to be printed instead, where it is not empty
 };
 
-/// Reads and checks the command line, with the paths of the output, and the file of a blend function.
-/// Throws InputError where an argument cannot be used.
+/// Reads and checks the command line, with the paths of the output, and the file of a blend
+/// function. Throws InputError where an argument cannot be used.
 [[nodiscard]] Options parse_options(int count, const char* const* arguments);
 
 }  // namespace oit

@@ -6,8 +6,8 @@
 namespace support {
 namespace {
 
-// The distance of two texts by optimal string alignment: the number of characters that are inserted,
-// left out, changed, or swapped with the next.
+// The distance of two texts by optimal string alignment: the number of characters that are
+// inserted, left out, changed, or swapped with the next.
 std::size_t distance(std::string_view a, std::string_view b) {
     const std::size_t width = b.size() + 1;
     std::vector<std::size_t> steps((a.size() + 1) * width);

@@ -37,8 +37,8 @@ struct IdleOption {
     std::string message;
 };
 
-/// The options of a program. Each is added with its default and where its value goes; parse() reads all
-/// of them, in the order in which they were added.
+/// The options of a program. Each is added with its default and where its value goes; parse() reads
+/// all of them, in the order in which they were added.
 class CommandLine {
 public:
     /// What reads and checks the text of an option.
@@ -49,8 +49,8 @@ public:
     CommandLine(const CommandLine&) = delete;
     CommandLine& operator=(const CommandLine&) = delete;
 
-    /// An option whose text `read` reads. An empty default is not read. `type` describes the text in the
-    /// help.
+    /// An option whose text `read` reads. An empty default is not read. `type` describes the text
+    /// in the help.
     void add(const std::string& name, const std::string& text, const std::string& what,
              const std::string& type, Read read);
     /// An option that is text, a path or a positional argument.
@@ -87,12 +87,12 @@ public:
     /// The end of the help.
     void add_footer(const std::string& text);
 
-    /// Returns the text to print if the command line asks for help or the version. Throws InputError, with
-    /// one line, if it is invalid.
+    /// Returns the text to print if the command line asks for help or the version. Throws
+    /// InputError, with one line, if it is invalid.
     [[nodiscard]] std::optional<std::string> parse(int count, const char* const* arguments);
 
-    /// For add_check(): throws InputError with the message of the first of these options that was given
-    /// and applies.
+    /// For add_check(): throws InputError with the message of the first of these options that was
+    /// given and applies.
     void refuse_idle(std::span<const IdleOption> table) const;
 
 private:
@@ -100,9 +100,9 @@ private:
     std::unique_ptr<Parser> parser_;
 };
 
-/// The body of an example's main(): prints errors in one line, after the program's name. Returns the exit
-/// code: 1 if `program` threw, returned false because it found a difference, or printed output that could
-/// not be written; else 0.
+/// The body of an example's main(): prints errors in one line, after the program's name. Returns
+/// the exit code: 1 if `program` threw, returned false because it found a difference, or printed
+/// output that could not be written; else 0.
 int run_program(const std::string& name, std::predicate auto&& program);
 
 /// Prints the first line of `message` after the program's name.

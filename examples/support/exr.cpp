@@ -1,5 +1,5 @@
-// Writes OpenEXR files: a header of attributes, the offsets of all lines, and the lines. Each line has
-// its channels one after the other. All numbers are little endian.
+// Writes OpenEXR files: a header of attributes, the offsets of all lines, and the lines. Each line
+// has its channels one after the other. All numbers are little endian.
 #include <bit>
 #include <cstring>
 #include <limits>

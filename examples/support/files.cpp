@@ -49,8 +49,8 @@ std::size_t utf8_length(std::string_view text) {
     return code < least[length] || code > 0x10FFFF || is_surrogate ? 0 : length;
 }
 
-// The target of a path. Does not follow links to open files (/dev/stdout): they may lead to the name of
-// a file that another process writes.
+// The target of a path. Does not follow links to open files (/dev/stdout): they may lead to the
+// name of a file that another process writes.
 fs::path target_of(fs::path path) {
     std::error_code error;
     constexpr int most_links = 40;
@@ -84,7 +84,8 @@ int write_all(int file, std::string_view bytes) {
 
 int write_and_close(int file, std::string_view bytes, bool to_disk) {
     int error = write_all(file, bytes);
-    // With remote disks, or quotas that are counted late, only fsync reports that there was no room.
+    // With remote disks, or quotas that are counted late, only fsync reports that there was no
+    // room.
     if (error == 0 && to_disk && ::fsync(file) != 0 && errno != EINVAL) error = errno;
     if (::close(file) != 0 && error == 0) error = errno;
     return error;
@@ -175,8 +176,8 @@ void check_output_path(const fs::path& path) {
 }
 
 void prepare_output() {
-    // The buffer holds more than a program prints, so that errors occur at the flush: stdio loses the
-    // reason of earlier ones.
+    // The buffer holds more than a program prints, so that errors occur at the flush: stdio loses
+    // the reason of earlier ones.
     static std::array<char, 1 << 16> buffer;
     (void)std::signal(SIGXFSZ, SIG_IGN);
     static const bool is_buffered = ::isatty(STDOUT_FILENO) == 1 ||

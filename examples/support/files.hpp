@@ -13,27 +13,29 @@ public:
     [[nodiscard]] const char* what() const noexcept override { return "stdout is closed"; }
 };
 
-/// A path for messages and JSON: UTF-8 stays as it is; other bytes and control characters become "\xE9".
+/// A path for messages and JSON: UTF-8 stays as it is; other bytes and control characters become
+/// "\xE9".
 [[nodiscard]] std::string text_of(const std::filesystem::path& path);
 
 /// Whether a path means stdout: "-", /dev/stdout and the like.
 [[nodiscard]] bool is_standard_output(const std::filesystem::path& path);
 
-/// Writes a file whole or not at all. A new file in the same folder replaces the old one once all bytes
-/// are on the disk; until then, and after a failure, the old file stays as it was. Follows symbolic
-/// links, and keeps permissions. Writes directly to a path that is not a regular file (a device, a FIFO),
-/// that is a mount point, or whose folder takes no new files. "-" is stdout.
+/// Writes a file whole or not at all. A new file in the same folder replaces the old one once all
+/// bytes are on the disk; until then, and after a failure, the old file stays as it was. Follows
+/// symbolic links, and keeps permissions. Writes directly to a path that is not a regular file (a
+/// device, a FIFO), that is a mount point, or whose folder takes no new files. "-" is stdout.
 ///
-/// Throws InputError, with the reason, where something cannot be written, and OutputClosed where the
-/// reader of stdout has closed it.
+/// Throws InputError, with the reason, where something cannot be written, and OutputClosed where
+/// the reader of stdout has closed it.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
-/// A check before long work: throws InputError, with the reason, where write_file() is sure to fail.
+/// A check before long work: throws InputError, with the reason, where write_file() is sure to
+/// fail.
 void check_output_path(const std::filesystem::path& path);
 
-/// Call this before anything is printed, so that errors of output have their reason. A file beyond the
-/// size limit of the process then makes write() fail, without a signal. stdout is written when it is
-/// flushed.
+/// Call this before anything is printed, so that errors of output have their reason. A file beyond
+/// the size limit of the process then makes write() fail, without a signal. stdout is written when
+/// it is flushed.
 void prepare_output();
 
 /// Throws InputError where some of the output did not reach stdout, and OutputClosed.

@@ -5,7 +5,8 @@
 
 namespace support {
 
-/// The first line of a message: compilers and drivers append logs to theirs, and a table has one line for each.
+/// The first line of a message: compilers and drivers append logs to theirs, and a table has one
+/// line for each.
 [[nodiscard]] inline std::string first_line(std::string_view text) {
     return std::string(text.substr(0, text.find('\n')));
 }

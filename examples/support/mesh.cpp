@@ -95,8 +95,8 @@ void turn_towards_normals(Mesh& mesh) {
     }
 }
 
-// Numbers the vertices that the mesh's triangles use, in the order of the source. Equal ones share a
-// number.
+// Numbers the vertices that the mesh's triangles use, in the order of the source. Equal ones share
+// a number.
 void merge_vertices(const Mesh& source, Mesh& mesh) {
     std::vector<bool> used(source.positions.size(), false);
     for (const auto& t : mesh.triangles)
@@ -180,7 +180,8 @@ Mesh clean_mesh(const Mesh& source) {
         }
     }
     merge_vertices(source, mesh);
-    // Only normals from the file reverse triangles. Normals that are computed here follow the triangles.
+    // Only normals from the file reverse triangles. Normals that are computed here follow the
+    // triangles.
     turn_towards_normals(mesh);
     complete_normals(mesh);
     // Coincident triangles then start at the same corner, whatever their winding, and the

@@ -44,9 +44,9 @@ struct MeshMaterial {
     std::optional<float> opacity;          ///< 0 to 1; nothing where the file does not say
 };
 
-/// Indexed triangles with a normal at each vertex. Normals have length 1. The mean of a triangle's normals
-/// points to the side from which its corners run counter-clockwise, except for normals that clean_mesh()
-/// computed at sharp edges.
+/// Indexed triangles with a normal at each vertex. Normals have length 1. The mean of a triangle's
+/// normals points to the side from which its corners run counter-clockwise, except for normals that
+/// clean_mesh() computed at sharp edges.
 struct Mesh {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;
@@ -64,17 +64,19 @@ struct Mesh {
     bool ends_within_line = false;
 };
 
-/// Loads every mesh of a file: PLY, OBJ, glTF and GLB, OFF, STL, and the formats that Assimp reads. Reads
-/// regular files of up to 1 GiB. Triangulates polygons, including concave ones. Merges vertices with equal
-/// position, normal and colour, and leaves out unused ones. Computes smooth normals where the file has
-/// none. Reverses triangles that disagree with the file's normals. Throws InputError where the file is
-/// missing, not a regular file, unreadable, empty, damaged or truncated, or has no triangle that can be
-/// drawn. The message is one line that names the file and the place in it.
+/// Loads every mesh of a file: PLY, OBJ, glTF and GLB, OFF, STL, and the formats that Assimp reads.
+/// Reads regular files of up to 1 GiB. Triangulates polygons, including concave ones. Merges
+/// vertices with equal position, normal and colour, and leaves out unused ones. Computes smooth
+/// normals where the file has none. Reverses triangles that disagree with the file's normals.
+/// Throws InputError where the file is missing, not a regular file, unreadable, empty, damaged or
+/// truncated, or has no triangle that can be drawn. The message is one line that names the file and
+/// the place in it.
 [[nodiscard]] Mesh load_mesh(const std::filesystem::path& path);
 
-/// Merges equal vertices, leaves out vertices without a triangle, drops and counts triangles that cannot
-/// be drawn, and computes missing normals (of length 0). Each triangle then starts at its vertex with the
-/// lowest index. load_mesh() does this after reading; call it for meshes from elsewhere.
+/// Merges equal vertices, leaves out vertices without a triangle, drops and counts triangles that
+/// cannot be drawn, and computes missing normals (of length 0). Each triangle then starts at its
+/// vertex with the lowest index. load_mesh() does this after reading; call it for meshes from
+/// elsewhere.
 [[nodiscard]] Mesh clean_mesh(const Mesh& mesh);
 
 /// Moves the mesh to the origin and scales it so that its smallest enclosing sphere (to within a

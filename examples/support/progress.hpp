@@ -7,8 +7,8 @@
 
 namespace support {
 
-/// Shows the progress of long work on stderr. On a terminal, one line changes. Elsewhere, a new line
-/// appears after ten seconds, and further lines after ever longer times.
+/// Shows the progress of long work on stderr. On a terminal, one line changes. Elsewhere, a new
+/// line appears after ten seconds, and further lines after ever longer times.
 class Progress {
 public:
     /// `out` and `first` are for tests.

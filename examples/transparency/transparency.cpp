@@ -32,13 +32,13 @@ Picture draw(const cellist::Device& device, const support::Mesh& mesh, const ras
                           "blend", fragments, cellist::type<Surface>);
     cellist::Buffer<cl_float4> image(device, width * height);
 
-    // Transform, rasterise and insert. complete() is false if the rasteriser's queues were too
-    // short; they have grown then.
+    // Transform, rasterise and insert. finish_or_grow() is false if the rasteriser's queues were
+    // too short; they have grown then.
     projection.transform();
     do {
         triangles.bin();
         fragments.build([&] { triangles.draw(insert, fragments, geometry.normals(), surface); });
-    } while (!triangles.complete());
+    } while (!triangles.finish_or_grow());
 
     // Sort the fragments of each pixel, nearest first, and blend them.
     fragments.sort(&Fragment::depth);

@@ -11,8 +11,8 @@
 namespace triangle_grid {
 namespace {
 
-// A sum of products of three floats, kept as one whole number of units of 2^lowest, which all floats
-// allow: no rounding anywhere.
+// A sum of products of three floats, kept as one whole number of units of 2^lowest, which all
+// floats allow: no rounding anywhere.
 class ExactSum {
 public:
     void add(double a, double b, double c, bool minus) {

@@ -121,9 +121,8 @@ double difference(const cl_float4& pixel, const dvec3& expected) {
     return most;
 }
 
-/// The rasteriser rounds corners to 1/256 pixel, so a pixel at an edge may see what a ray beside its
-/// own sees.
-/// Returns the number of pixels that are neither.
+/// The rasteriser rounds corners to 1/256 pixel, so a pixel at an edge may see what a ray beside
+/// its own sees. Returns the number of pixels that are neither.
 int wrong_pixels(const transparency::Picture& picture, const Reference& reference, int width) {
     constexpr double tolerance = 2e-4, beside = 1.0 / 256;
     int wrong = 0;

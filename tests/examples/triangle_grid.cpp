@@ -142,7 +142,8 @@ TEST_CASE("segments whose ends are as far away as floats go") {
                 if (i % 4 == 2)
                     far = std::ldexp(1.0F, exponent) * glm::vec3(glm::ivec3(2.0F * point()));
                 const glm::vec3 through = in_mesh();
-                // One end near, and both ends far: through the mesh exactly where floats can say so.
+                // One end near, and both ends far: through the mesh exactly where floats can say
+                // so.
                 segments.push_back({far, through - 0.25F * scale * glm::normalize(point())});
                 segments.push_back({i % 2 == 0 ? -far : 2.0F * through - far, far});
             }

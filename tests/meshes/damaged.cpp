@@ -1,5 +1,5 @@
-// Damaged PLY, OFF and STL files are refused with the place of the damage, or loaded with a count of what
-// is missing.
+// Damaged PLY, OFF and STL files are refused with the place of the damage, or loaded with a count
+// of what is missing.
 #include "meshes/support/odd_file.hpp"
 #include "support/errors.hpp"
 

@@ -1,4 +1,5 @@
-// Of the files that a mesh file names, only those in its folder are read. Messages show nothing of others.
+// Of the files that a mesh file names, only those in its folder are read. Messages show nothing of
+// others.
 #include "meshes/support/gltf_text.hpp"
 #include "meshes/support/loaded.hpp"
 

@@ -1,5 +1,5 @@
-// What a glTF file has besides triangles: skins, scenes, indices, extensions. Anything unsupported or
-// inconsistent is refused with its place.
+// What a glTF file has besides triangles: skins, scenes, indices, extensions. Anything unsupported
+// or inconsistent is refused with its place.
 #include "meshes/support/gltf_text.hpp"
 #include "meshes/support/loaded.hpp"
 

@@ -1,4 +1,5 @@
-// OBJ files of every layout give the mesh that they were made from. Cut and damaged ones are refused.
+// OBJ files of every layout give the mesh that they were made from. Cut and damaged ones are
+// refused.
 #include "meshes/support/odd_file.hpp"
 
 namespace cellist::test {
@@ -139,8 +140,8 @@ TEST_CASE("OBJ files of 500 layouts give their mesh") {
     }
 }
 
-// An OBJ file does not declare its length, so a cut file that ends with a whole line loads: it gives the
-// first triangles.
+// An OBJ file does not declare its length, so a cut file that ends with a whole line loads: it
+// gives the first triangles.
 std::string problem_of_cut_obj(const Folder& folder, const std::string& bytes,
                                const PlainMesh& plain) {
     try {

@@ -1,4 +1,5 @@
-// OFF files of every layout give the mesh that they were made from. Cut and damaged ones are refused.
+// OFF files of every layout give the mesh that they were made from. Cut and damaged ones are
+// refused.
 #include "meshes/support/odd_file.hpp"
 
 namespace cellist::test {

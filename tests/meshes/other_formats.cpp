@@ -1,4 +1,5 @@
-// Assimp's formats load with their transforms and materials. A file that Assimp cannot read is an error.
+// Assimp's formats load with their transforms and materials. A file that Assimp cannot read is an
+// error.
 #include <cmath>
 #include <cstdint>
 
@@ -22,7 +23,8 @@ std::string collada(const std::string& image = "") {
 <float_array id="pa" count="12">0 0 0 4 0 0 1 1 0 0 4 0</float_array><technique_common>
 <accessor source="#pa" count="4" stride="3"><param name="X" type="float"/>
 <param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
-<vertices id="v"><input semantic="POSITION" source="#p"/></vertices><polylist count="1" material="m">
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<polylist count="1" material="m">
 <input semantic="VERTEX" source="#v" offset="0"/><vcount>4</vcount><p>0 1 2 3</p></polylist></mesh>
 </geometry></library_geometries><library_visual_scenes><visual_scene id="s"><node>
 <translate>0 0 7</translate><instance_geometry url="#g"><bind_material><technique_common>

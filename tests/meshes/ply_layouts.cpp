@@ -1,4 +1,5 @@
-// PLY files of every layout give the mesh that they were made from. Cut and damaged ones are refused.
+// PLY files of every layout give the mesh that they were made from. Cut and damaged ones are
+// refused.
 #include <bit>
 #include <cstring>
 

@@ -51,8 +51,8 @@ double turn(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// A polygon of random corners on a lattice; crossing edges are exchanged until none cross. Empty where
-// three corners are collinear, since the polygon may then touch itself.
+// A polygon of random corners on a lattice; crossing edges are exchanged until none cross. Empty
+// where three corners are collinear, since the polygon may then touch itself.
 std::vector<glm::vec3> simple_polygon(std::mt19937& random, std::size_t count) {
     std::vector<glm::dvec2> p;
     for (std::size_t i = 0; i < count; ++i) p.emplace_back(random() % 1000, random() % 1000);

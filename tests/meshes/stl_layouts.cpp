@@ -1,4 +1,5 @@
-// STL files of every layout give the mesh that they were made from. Cut and damaged ones are refused.
+// STL files of every layout give the mesh that they were made from. Cut and damaged ones are
+// refused.
 #include <cctype>
 
 #include "meshes/support/odd_file.hpp"

@@ -1,5 +1,5 @@
-# Opens the report of cellist-tradeoff in a browser without a window, and fails where its script did not run
-# to its end without an error, or does not show what the address asks for.
+# Opens the report of cellist-tradeoff in a browser without a window, and fails where its script did
+# not run to its end without an error, or does not show what the address asks for.
 #
 #   browser    Chromium, or one of its kind
 #   tradeoff   cellist-tradeoff
@@ -8,7 +8,8 @@ cmake_minimum_required(VERSION 3.25)
 
 set(page "${folder}/report.html")
 execute_process(
-    COMMAND "${tradeoff}" extreme-alphas --size 64x48 --methods weighted,fixed --frames 3 --html "${page}"
+    COMMAND "${tradeoff}" extreme-alphas --size 64x48 --methods weighted,fixed --frames 3
+        --html "${page}"
     COMMAND_ERROR_IS_FATAL ANY)
 execute_process(
     COMMAND "${browser}" --headless --no-sandbox --disable-gpu "--user-data-dir=${folder}/profile"

@@ -19,14 +19,16 @@
 namespace oit {
 
 /// The picture of a frame in double precision. Where depths as float do not tell the order of its
-/// layers, any order is as right, and so is the picture that the device draws of all layers in float.
+/// layers, any order is as right, and so is the picture that the device draws of all layers in
+/// float.
 class Truth {
 public:
     /// Draws both. Blocks.
     Truth(const cellist::Device& device, const Frame& frame);
 
     /// `image` is linear, eye by eye. PictureErrors::all are those against the reference;
-    /// PictureErrors::resolved are, in pixels with an unresolved order, against the nearest of those.
+    /// PictureErrors::resolved are, in pixels with an unresolved order, against the nearest of
+    /// those.
     [[nodiscard]] PictureErrors errors_of(std::span<const cl_float4> image) const;
 
     [[nodiscard]] const Reference& reference() const { return reference_; }
@@ -56,14 +58,14 @@ struct SettingMeasurement {
 
 /// All settings of a frame, drawn and measured, and the best of them for a budget.
 ///
-/// Settings draw interleaved, so that other work on the machine slows all of them alike. One that takes
-/// far longer than all layers in float with the method `linked`, which keeps every budget that can
-/// be kept, is drawn twice only.
+/// Settings draw interleaved, so that other work on the machine slows all of them alike. One that
+/// takes far longer than all layers in float with the method `linked`, which keeps every budget
+/// that can be kept, is drawn twice only.
 class ExhaustiveSearch {
 public:
     /// Draws each setting `runs` times at least, and keeps all renderers. Blocks. Refers to the
-    /// device and the frame, which must outlive it. Throws std::runtime_error where the device cannot
-    /// draw all layers in float.
+    /// device and the frame, which must outlive it. Throws std::runtime_error where the device
+    /// cannot draw all layers in float.
     ExhaustiveSearch(const cellist::Device& device, const Frame& frame, std::uint32_t runs);
     ExhaustiveSearch(const ExhaustiveSearch&) = delete;
     ExhaustiveSearch& operator=(const ExhaustiveSearch&) = delete;

@@ -1,6 +1,7 @@
 # Runs cellist-budget-grid on one small scene. Checks that budgets are kept and that the JSON can be
 # read, but not the cost of settings.
-execute_process(COMMAND "${program}" --filter coplanar --size 48x36 --frames 1 --cost 1000000 --json "${json}"
+execute_process(
+    COMMAND "${program}" --filter coplanar --size 48x36 --frames 1 --cost 1000000 --json "${json}"
     RESULT_VARIABLE result)
 if(NOT result EQUAL 0)
     message(FATAL_ERROR "cellist-budget-grid: ${result}")

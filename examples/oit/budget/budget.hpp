@@ -19,8 +19,8 @@ struct PictureError {
 struct PictureErrors {
     PictureError resolved;  ///< without the larger error that undecided pixels may have
     PictureError all;
-    /// Pixels whose order of layers float depths do not resolve, where the other order could be over
-    /// the limit that the picture was compared for.
+    /// Pixels whose order of layers float depths do not resolve, where the other order could be
+    /// over the limit that the picture was compared for.
     std::uint64_t undecided_pixels = 0;
 };
 
@@ -29,20 +29,20 @@ struct PictureErrors {
 ///     cellist-oit dragon.ply --budget 40dB      PSNR of at least 40 dB
 ///     cellist-oit dragon.ply --budget 1/255     no channel off by more than 1/255; also 0.004
 ///
-/// The truth is the frame in real numbers: all layers, each with its own depth. Where two layers lie so
-/// close that float depths do not resolve which is in front, the pixel is undecided, and neither order is
-/// wrong (see Survey), unless the budget is strict.
+/// The truth is the frame in real numbers: all layers, each with its own depth. Where two layers
+/// lie so close that float depths do not resolve which is in front, the pixel is undecided, and
+/// neither order is wrong (see Survey), unless the budget is strict.
 ///
-/// 1. Survey draws the frame once with all layers in float, and finds for each pixel how far that can
-///    be from the truth, and what of it packing, fewer layers or an early end would change.
-/// 2. BudgetSearch goes through settings_for(frame). A setting whose error is known from the survey to be
-///    too large is not drawn. The others are, cheapest first, against each other: those that a few
-///    draws show to be slower go, and of the rest those go that are over budget. Where times do not
-///    tell which of the rest is fastest, the plainest of them is chosen. The error of a setting is
-///    the bound that its method has for it (MethodInfo::bound) or, where that is too wide or there is
-///    none, its difference from the survey's picture plus that picture's own bound. So what is
-///    promised holds against the truth, and no reference on the CPU is needed.
-/// 3. BudgetController draws frames with the setting that was chosen, and surveys again when time or camera
+/// 1. Survey draws the frame once with all layers in float. For each pixel it finds how far that
+///    can be from the truth, and what packing, fewer layers or an early end would change.
+/// 2. BudgetSearch goes through settings_for(frame). Settings whose surveyed error is too large
+///    are not drawn. The others are drawn against each other, cheapest first: first the slower
+///    ones are removed, then those over budget. If times do not resolve which of the rest is
+///    fastest, the plainest of them is chosen. The error of a setting is the bound that its method
+///    has for it (MethodInfo::bound). Where that is too wide or missing, it is the difference from
+///    the survey's picture plus that picture's own bound. So what is promised holds against the
+///    truth, and no reference on the CPU is needed.
+/// 3. BudgetController draws frames with the chosen setting, and surveys again when time or camera
 ///    change. A frame over budget is drawn again with another setting.
 struct Budget {
     enum class Kind { largest, psnr };
@@ -67,8 +67,8 @@ struct Budget {
     [[nodiscard]] std::string text() const;
 };
 
-/// Reads "40dB" (also "40 db"), "1/255" or "0.004". Throws InputError at anything else, and at limits that every
-/// picture meets or none can.
+/// Reads "40dB" (also "40 db"), "1/255" or "0.004". Throws InputError at anything else, and at
+/// limits that every picture meets or none can.
 [[nodiscard]] Budget parse_budget(std::string_view text);
 
 }  // namespace oit

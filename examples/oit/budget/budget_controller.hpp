@@ -9,10 +9,10 @@ namespace oit {
 
 /// Draws frames of a changing scene within a budget.
 ///
-/// What was chosen for one moment need not do for the next. Each frame whose time or views differ from
-/// those of the last is surveyed and compared; where it is over the budget, a setting is chosen again and
-/// the frame drawn again. With `check_every` N, a check follows N frames of which nothing is known, the
-/// last of them included: for speed, where the picture changes little.
+/// What was chosen for one moment need not do for the next. Each frame whose time or views differ
+/// from those of the last is surveyed and compared; where it is over the budget, a setting is
+/// chosen again and the frame drawn again. With `check_every` N, a check follows N frames of which
+/// nothing is known, the last of them included: for speed, where the picture changes little.
 class BudgetController {
 public:
     /// A frame that was drawn.

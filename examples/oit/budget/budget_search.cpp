@@ -21,7 +21,8 @@ using Outcome = Candidate::Outcome;
 // Other formats and sizes make a method faster by no more than packing makes `linked`, times this.
 // So all settings of a method that is slower than that are left out.
 constexpr double method_margin = 1.2;
-// A pass that stores nothing takes this part of one that stores at least: its triangles are the same.
+// A pass that stores nothing takes this part of one that stores at least: its triangles are the
+// same.
 constexpr double part_of_pass = 0.3;
 
 constexpr std::uint64_t all_layers = std::numeric_limits<std::uint64_t>::max();
@@ -55,8 +56,8 @@ Series series_of(const Setting& setting) {
     return setting.quality.size ? Series::size : Series::none;
 }
 
-// How many settings of a series are drawn that meet the budget. More layers may be faster than fewer,
-// because another algorithm finds them.
+// How many settings of a series are drawn that meet the budget. More layers may be faster than
+// fewer, because another algorithm finds them.
 std::size_t enough_of(Series series) { return series == Series::layers ? 2 : 1; }
 
 PictureError lesser(const PictureError& a, const PictureError& b) {
@@ -221,8 +222,8 @@ private:
         pass_ms_ = std::min(pass.ms(), exact_->ms());
     }
 
-    // Notes the least time of the method, and what it gains from packing. The first draws of all are
-    // slow, so the least of all draws in float counts.
+    // Notes the least time of the method, and what it gains from packing. The first draws of all
+    // are slow, so the least of all draws in float counts.
     void note(const DrawnSetting& drawn, double ms) {
         const Setting& setting = drawn.candidate.setting;
         const auto [method, is_new] = method_ms_.try_emplace(setting.method->name, ms);
@@ -281,8 +282,8 @@ private:
         });
     }
 
-    // The gain of the others is relative to all layers in float, so these draw at least one round, even
-    // if they were slower before.
+    // The gain of the others is relative to all layers in float, so these draw at least one round,
+    // even if they were slower before.
     void draw_final_rounds() {
         if (exact_ && budget_.met_by(exact_->errors) &&
             std::ranges::find(within_, exact_) == within_.end())

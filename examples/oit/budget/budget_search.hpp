@@ -38,8 +38,8 @@ struct Candidate {
     std::optional<double> fastest_ms = {};   ///< a frame, where it was drawn
     /// How many times as long as the fastest setting so far it took, with interleaved draws.
     std::optional<double> times_fastest = {};
-    /// Of settings in the final rounds: their times, and the ratio of medians to the chosen setting over
-    /// the frames that both drew.
+    /// Of settings in the final rounds: their times, and the ratio of medians to the chosen setting
+    /// over the frames that both drew.
     std::optional<Spread> times = {};
     std::optional<double> times_chosen = {};
     std::string failure = {};
@@ -53,7 +53,8 @@ struct Choice {
     bool bounded = false;            ///< as Candidate::bounded
     Spread times = {};               ///< of its frames
     std::uint32_t timed_frames = 0;  ///< number of these frames
-    /// How many times as long exact_setting() takes, interleaved with the chosen one; 1 if it was chosen.
+    /// How many times as long exact_setting() takes, interleaved with the chosen one; 1 if it was
+    /// chosen.
     std::optional<double> exact_times = {};
     SurveyResult scene = {};
     std::vector<Candidate> candidates = {};  ///< fastest first; those that were not drawn come last
@@ -70,17 +71,17 @@ struct Choice {
 struct SearchOptions {
     /// Called with the progress of the search, from 0 to 1.
     std::function<void(double)> progress = [](double) {};
-    /// After this time the search draws no new setting, except all layers in float. The final rounds then
-    /// draw three frames of each setting.
+    /// After this time the search draws no new setting, except all layers in float. The final
+    /// rounds then draw three frames of each setting.
     double seconds = 120;
 };
 
-/// Finds the cheapest setting within a budget, for a frame on a device. Each setting draws interleaved
-/// with the fastest so far; the settings that remain draw the FinalRounds.
+/// Finds the cheapest setting within a budget, for a frame on a device. Each setting draws
+/// interleaved with the fastest so far; the settings that remain draw the FinalRounds.
 class BudgetSearch {
 public:
-    /// Refers to the device and the frame, which must outlive it. Takes samples and the depth scale from
-    /// the frame, and ignores its format, size, layers and epsilon.
+    /// Refers to the device and the frame, which must outlive it. Takes samples and the depth scale
+    /// from the frame, and ignores its format, size, layers and epsilon.
     BudgetSearch(const cellist::Device& device, const Frame& frame, const Budget& budget,
                  SearchOptions options);
     ~BudgetSearch();

@@ -8,7 +8,8 @@
 
 namespace oit {
 
-/// How the times of some frames are spread, in milliseconds: half of them lie between the quartiles.
+/// How the times of some frames are spread, in milliseconds: half of them lie between the
+/// quartiles.
 struct Spread {
     double least_ms = 0;
     double lower_quartile_ms = 0;
@@ -32,8 +33,8 @@ struct Timed {
     Spread times;
 };
 
-/// The index of the plainest of the settings that are not measurably slower than the one with the least
-/// median; see plainer().
+/// The index of the plainest of the settings that are not measurably slower than the one with the
+/// least median; see plainer().
 [[nodiscard]] std::size_t plainest_of_fastest(std::span<const Timed> settings);
 
 }  // namespace oit

@@ -1,18 +1,19 @@
 // One frame, with all layers in float, and what of it is how certain.
 //
-// Reads lists sorted by key, of fragments that are in front of the opaque surfaces or so little behind
-// them that float does not tell. Writes the image, and for each pixel
-//   uncertainty  xyz: how far the sRGB-encoded image is from the truth at most, where depths tell the
-//                order of all layers; w: by how much more where they do not
+// Reads lists sorted by key, of fragments that are in front of the opaque surfaces or so little
+// behind them that float does not tell. Writes the image, and for each pixel
+//   uncertainty  xyz: how far the sRGB-encoded image is from the truth at most, where depths tell
+//                the order of all layers; w: by how much more where they do not
 // metrics: see metrics.clh. The bounds are the largest errors of
 //   0        the image, apart from what depends on an order that float depths do not tell
 //   1        the image
 //   2 ...    OIT_FORMATS: of all layers in each packed format, as 0; infinite where none is known
 //   then     OIT_LAYER_COUNTS: of so many nearest layers, in float
 //   then     OIT_EPSILONS: of an end where no more than that part of the light passes
-// Then come as maxima: the light that passes behind so many layers, opacity, minus opacity, layers. And as
-// sums: pixels in which a depth of float, of 24 and of 16 bits does not tell an order that matters;
-// fragments; pixels by their number of layers, bin i for 2^(i - 1) and more, and bin 0 for none.
+// Then come as maxima: the light that passes behind so many layers, opacity, minus opacity, layers.
+// And as sums: pixels in which a depth of float, of 24 and of 16 bits does not tell an order that
+// matters; fragments; pixels by their number of layers, bin i for 2^(i - 1) and more, and bin 0 for
+// none.
 
 // The depths of nodes: float, 24 and 16 bits.
 #define OIT_DEPTHS_OF_NODES 3
@@ -33,7 +34,7 @@
 constant uint oit_layer_counts[] = {OIT_LAYER_COUNTS};
 constant float oit_epsilons[] = {OIT_EPSILONS};
 
-// ---- layers whose depths are closer than depths resolve -------------------------------------------
+// ---- layers whose depths are closer than depths resolve -----------------------------------------
 
 // So many layers in front of one are looked at one by one.
 #define OIT_WINDOW 4
@@ -45,19 +46,19 @@ static inline float oit_resolution(const OitResolution* resolution, int kind, fl
 
 // A layer, and the light in front of it.
 typedef struct {
-    OitLights before;
+    OitBlendState before;
     OitFragment fragment;
-} OitBlended;
+} OitLayer;
 
 typedef struct {
-    OitBlended layers[OIT_WINDOW];  // the i-th layer of a pixel at i % OIT_WINDOW
+    OitLayer layers[OIT_WINDOW];  // the i-th layer of a pixel at i % OIT_WINDOW
     uint count;
     // Of the last layer that is no longer among them: its depth, and the light that gets there.
     float lost_depth, lost_reaches;
     float effect[OIT_DEPTHS_OF_NODES];  // linear, of all orders that depths do not tell
 } OitOrder;
 
-static inline float oit_light_difference(const OitLight* a, const OitLight* b, float brightest,
+static inline float oit_blend_difference(const OitBlend* a, const OitBlend* b, float brightest,
                                          float distance) {
     float difference = oit_brightest(fabs(a->colour - b->colour)) +
                        oit_most(fabs(a->transmittance - b->transmittance)) * brightest;
@@ -69,7 +70,8 @@ static inline float oit_light_difference(const OitLight* a, const OitLight* b, f
     return difference;
 }
 
-// How far apart two layers are in a sample, of which the first is in front at the mean of its samples.
+// How far apart two layers are in a sample, of which the first is in front at the mean of its
+// samples.
 #ifdef OIT_DEPTH_RANGE
 static inline float oit_reach(const OitFragment* fragment) {
     return fabs(fragment->slope_x) + fabs(fragment->slope_y);
@@ -100,22 +102,22 @@ static inline float oit_gap(const OitFragment* front, const OitFragment* back, i
 
 // Adds how much the image changes at most if two layers change places, in the samples in which they
 // are closer than depths resolve. brightest: of the light behind. distance: through what is behind.
-static inline void oit_exchange(OitOrder* order, const OitPixel* pixel, const OitBlended* front,
+static inline void oit_exchange(OitOrder* order, const OitPixel* pixel, const OitLayer* front,
                                 const OitFragment* fragment, float brightest, float distance,
                                 const float* close) {
     OitFragment back = *fragment;
     back.depth = front->fragment.depth;
-    for (int i = 0; i < OIT_LIGHTS; ++i) {
+    for (int i = 0; i < OIT_BLENDED_SAMPLES; ++i) {
         if (!oit_covers(pixel, &front->fragment, i) || !oit_covers(pixel, &back, i)) continue;
         const float gap = oit_gap(&front->fragment, fragment, pixel->first_sample + i);
         if (gap > fmax(close[0], fmax(close[1], close[2]))) continue;
-        OitLight ordered = front->before.of[i], swapped = ordered;
+        OitBlend ordered = front->before.of[i], swapped = ordered;
         oit_blend(&ordered, &front->fragment, pixel->ray_length);
         oit_blend(&ordered, &back, pixel->ray_length);
         oit_blend(&swapped, &back, pixel->ray_length);
         oit_blend(&swapped, &front->fragment, pixel->ray_length);
-        const float effect =
-            oit_light_difference(&ordered, &swapped, brightest, distance) / (float)OIT_LIGHTS;
+        const float effect = oit_blend_difference(&ordered, &swapped, brightest, distance) /
+                             (float)OIT_BLENDED_SAMPLES;
         for (int kind = 0; kind < OIT_DEPTHS_OF_NODES; ++kind)
             if (gap <= close[kind]) order->effect[kind] += effect;
     }
@@ -123,14 +125,14 @@ static inline void oit_exchange(OitOrder* order, const OitPixel* pixel, const Oi
 
 // The next layer of a pixel.
 static inline void oit_next_layer(OitOrder* order, const OitPixel* pixel,
-                                  const OitResolution* resolution, const OitLights* before,
+                                  const OitResolution* resolution, const OitBlendState* before,
                                   const OitFragment* fragment, float brightest, float last_depth) {
     const float distance = fmax(last_depth - fragment->depth, 0.0f) * pixel->ray_length;
     float close[OIT_DEPTHS_OF_NODES];
     for (int kind = 0; kind < OIT_DEPTHS_OF_NODES; ++kind)
         close[kind] = oit_resolution(resolution, kind, fragment->depth);
     for (uint back = 1; back <= min(order->count, (uint)OIT_WINDOW); ++back) {
-        const OitBlended* front = &order->layers[(order->count - back) % OIT_WINDOW];
+        const OitLayer* front = &order->layers[(order->count - back) % OIT_WINDOW];
         oit_exchange(order, pixel, front, fragment, brightest, distance, close);
     }
     // With more than that, all light that gets there may change.
@@ -138,12 +140,12 @@ static inline void oit_next_layer(OitOrder* order, const OitPixel* pixel,
         if (oit_least_depth(fragment) - order->lost_depth <= close[kind])
             order->effect[kind] += order->lost_reaches * brightest;
 
-    OitBlended* location = &order->layers[order->count % OIT_WINDOW];
+    OitLayer* location = &order->layers[order->count % OIT_WINDOW];
     if (order->count >= OIT_WINDOW &&
         oit_greatest_depth(&location->fragment) >= order->lost_depth) {
         order->lost_depth = oit_greatest_depth(&location->fragment);
         order->lost_reaches = 0.0f;
-        for (int i = 0; i < OIT_LIGHTS; ++i)
+        for (int i = 0; i < OIT_BLENDED_SAMPLES; ++i)
             order->lost_reaches =
                 fmax(order->lost_reaches, oit_most(location->before.of[i].transmittance));
     }
@@ -152,7 +154,7 @@ static inline void oit_next_layer(OitOrder* order, const OitPixel* pixel,
     ++order->count;
 }
 
-// ---- errors ---------------------------------------------------------------------------------------
+// ---- errors -------------------------------------------------------------------------------------
 
 // How far the encoding of a value is from that of another which is off by `error` at most.
 static inline float oit_encoded_error(float value, float error) {
@@ -195,30 +197,32 @@ static inline void oit_add_packing(OitPacking* packing, const OitFrame* frame,
 // Bounds are known for what covers and what adds.
 #define OIT_HAS_PACKING_BOUND ((OIT_BLENDS & ~(1u << OIT_OVER | 1u << OIT_ADDITIVE)) == 0u)
 
-// How far the linear image is from the truth at most, where the order of its layers is right. shares: the
-// sum of the parts of their colours that layers add. u is 2^-24; see docs/numerics.md.
+// How far the linear image is from the truth at most, where the order of its layers is right.
+// shares: the sum of the parts of their colours that layers add. u is 2^-24; see docs/numerics.md.
 static inline float3 oit_rounding(const OitFrame* frame, float3 seen, uint layers, float shares,
                                   float brightest) {
-    // The shading of each layer by its share, and what is behind. Where surfaces cover, shares sum to 1.
+    // The shading of each layer by its share, and what is behind. Where surfaces cover, shares sum
+    // to 1.
     float3 error = OIT_SHADING_ERROR * frame->colour_max * fmax(shares, 1.0f);
-    // Blending, (3 n + 2) u of sums without a negative term; the mean of samples rounds up to 8 times more.
+    // Blending, (3 n + 2) u of sums without a negative term; the mean of samples rounds up to 8
+    // times more.
     error += seen * (0x1p-20f + 0x1p-22f * layers);
 #ifdef OIT_HAS_OPACITIES
     // Opacities of the corners are interpolated as depths are, to 8 u.
     error += 0x1p-21f * brightest * layers;
 #endif
 #ifdef OIT_ABSORBS
-    // Distances are differences of two depths, each off by 8 u of itself: 256 u, where extinction times
-    // depth is 16 at most.
+    // Distances are differences of two depths, each off by 8 u of itself: 256 u, where extinction
+    // times depth is 16 at most.
     error += 0x1p-16f * seen * layers;
 #endif
     return error;
 }
 
-// ---- the survey -----------------------------------------------------------------------------------
+// ---- the survey ---------------------------------------------------------------------------------
 
-// The samples of a fragment that are in front of the opaque surfaces; `close` gets those of which float
-// does not tell.
+// The samples of a fragment that are in front of the opaque surfaces; `close` gets those of which
+// float does not tell.
 static inline uint oit_surely_visible(OIT_SCREEN, const OitPixel* pixel,
                                       const OitResolution* resolution, const OitFragment* fragment,
                                       uint* close) {
@@ -226,7 +230,7 @@ static inline uint oit_surely_visible(OIT_SCREEN, const OitPixel* pixel,
     uint sure = fragment->coverage;
 #ifdef OIT_HAS_OPAQUE
     const float reach = oit_resolution(resolution, 0, fragment->depth);
-    for (int i = 0; i < OIT_LIGHTS; ++i) {
+    for (int i = 0; i < OIT_BLENDED_SAMPLES; ++i) {
         float depth;
         (void)oit_behind(OIT_SCREEN_PASS, pixel, i, &depth);
         if (fabs(depth - fragment->depth) <= reach) *close |= 1u << i & sure;
@@ -236,15 +240,59 @@ static inline uint oit_surely_visible(OIT_SCREEN, const OitPixel* pixel,
     return sure;
 }
 
-static inline float3 oit_mean_seen(OIT_SCREEN, const OitPixel* pixel, const OitLights* lights) {
-    OitLights copy = *lights;
-    return oit_sum_of_samples(OIT_SCREEN_PASS, pixel, &copy) / (float)OIT_LIGHTS;
+static inline float3 oit_mean_seen(OIT_SCREEN, const OitPixel* pixel,
+                                   const OitBlendState* blended) {
+    OitBlendState copy = *blended;
+    return oit_sum_of_samples(OIT_SCREEN_PASS, pixel, &copy) / (float)OIT_BLENDED_SAMPLES;
 }
 
-static inline float oit_passes(const OitLights* lights) {
+static inline float oit_passes(const OitBlendState* blended) {
     float most = 0.0f;
-    for (int i = 0; i < OIT_LIGHTS; ++i) most = fmax(most, oit_most(lights->of[i].transmittance));
+    for (int i = 0; i < OIT_BLENDED_SAMPLES; ++i)
+        most = fmax(most, oit_most(blended->of[i].transmittance));
     return most;
+}
+
+// The brightest light that can come from behind a layer, and where the last surface is.
+static inline float oit_light_from_behind(CELLIST_LISTS(OIT_NODE, fragments), OIT_SCREEN,
+                                          const OitPixel* pixel, uint cell, float* last_depth) {
+    float brightest = 0.0f, added = 0.0f;
+    *last_depth = 0.0f;
+    for (int i = 0; i < OIT_BLENDED_SAMPLES; ++i) {
+        float depth;
+        brightest = fmax(brightest, oit_brightest(oit_behind(OIT_SCREEN_PASS, pixel, i, &depth)));
+        if (depth < INFINITY) *last_depth = fmax(*last_depth, depth);
+    }
+    cellist_for_each(fragments, cell, node) {
+        const OitFragment fragment = oit_unpack(&pixel->frame, cellist_get(fragments, node));
+        *last_depth = fmax(*last_depth, fragment.depth);
+        if (oit_blends(&fragment, OIT_ADDITIVE) || oit_blends(&fragment, OIT_USER))
+            added += fragment.alpha * oit_brightest(fragment.colour);
+        else if (oit_blends(&fragment, OIT_OVER))
+            brightest = fmax(brightest, oit_brightest(fragment.colour));
+    }
+    return brightest + added;
+}
+
+// What a pixel shows after so many layers, and after so little light: see OIT_CUTS.
+typedef struct {
+    float3 seen[OIT_CUTS];
+    float passes[OIT_LAYER_COUNT];  // the light that passes behind so many layers
+    uint reached;                   // a bit for each cut
+} OitCuts;
+
+// Keeps what the pixel shows in front of its next layer, for the cuts that end there.
+static inline void oit_cut(OitCuts* cuts, OIT_SCREEN, const OitPixel* pixel,
+                           const OitBlendState* blended, uint layers, float passes) {
+    for (int i = 0; i < OIT_CUTS; ++i) {
+        if (cuts->reached >> i & 1) continue;
+        if (i < OIT_LAYER_COUNT ? layers != oit_layer_counts[i]
+                                : passes > oit_epsilons[i - OIT_LAYER_COUNT])
+            continue;
+        cuts->reached |= 1u << i;
+        cuts->seen[i] = oit_mean_seen(OIT_SCREEN_PASS, pixel, blended);
+        if (i < OIT_LAYER_COUNT) cuts->passes[i] = passes;
+    }
 }
 
 kernel void oit_survey(CELLIST_LISTS(OIT_NODE, fragments), const OitResolution resolution,
@@ -255,25 +303,11 @@ kernel void oit_survey(CELLIST_LISTS(OIT_NODE, fragments), const OitResolution r
     if (oit_pixel(OIT_SCREEN_PASS, &pixel)) {
         const uint cell = cellist_cell3(fragments, pixel.x, pixel.y, pixel.eye);
 
-        // The brightest light that can come from behind a layer, and where the last surface is.
-        float brightest = 0.0f, added = 0.0f, last_depth = 0.0f;
-        for (int i = 0; i < OIT_LIGHTS; ++i) {
-            float depth;
-            brightest =
-                fmax(brightest, oit_brightest(oit_behind(OIT_SCREEN_PASS, &pixel, i, &depth)));
-            if (depth < INFINITY) last_depth = fmax(last_depth, depth);
-        }
-        cellist_for_each(fragments, cell, node) {
-            const OitFragment fragment = oit_unpack(&pixel.frame, cellist_get(fragments, node));
-            last_depth = fmax(last_depth, fragment.depth);
-            if (oit_blends(&fragment, OIT_ADDITIVE) || oit_blends(&fragment, OIT_USER))
-                added += fragment.alpha * oit_brightest(fragment.colour);
-            else if (oit_blends(&fragment, OIT_OVER))
-                brightest = fmax(brightest, oit_brightest(fragment.colour));
-        }
-        brightest += added;
+        float last_depth;
+        const float brightest = oit_light_from_behind(CELLIST_PASS(fragments), OIT_SCREEN_PASS,
+                                                      &pixel, cell, &last_depth);
 
-        OitLights lights = oit_lights();
+        OitBlendState blended = oit_blend_state();
         OitOrder order;
         order.count = 0;
         order.lost_depth = -INFINITY;
@@ -283,10 +317,10 @@ kernel void oit_survey(CELLIST_LISTS(OIT_NODE, fragments), const OitResolution r
             packing.colour[i] = 0.0f;
             packing.alpha[i] = 0.0f;
         }
-        float3 cut[OIT_CUTS];
-        float behind[OIT_LAYER_COUNT];
-        for (int i = 0; i < OIT_LAYER_COUNT; ++i) behind[i] = 0.0f;
-        uint is_cut = 0, layers = 0;
+        OitCuts cuts;
+        cuts.reached = 0;
+        for (int i = 0; i < OIT_LAYER_COUNT; ++i) cuts.passes[i] = 0.0f;
+        uint layers = 0;
         float shares = 0.0f;
         float hidden = 0.0f;  // by opaque surfaces, or not
         cellist_for_each(fragments, cell, node) {
@@ -295,35 +329,27 @@ kernel void oit_survey(CELLIST_LISTS(OIT_NODE, fragments), const OitResolution r
             const uint sure =
                 oit_surely_visible(OIT_SCREEN_PASS, &pixel, &resolution, &fragment, &close);
             if (close != 0) {
-                OitLights with = lights;
+                OitBlendState with = blended;
                 fragment.coverage = close;
                 oit_add(&with, &pixel, &fragment);
                 hidden += oit_brightest(fabs(oit_mean_seen(OIT_SCREEN_PASS, &pixel, &with) -
-                                             oit_mean_seen(OIT_SCREEN_PASS, &pixel, &lights)));
+                                             oit_mean_seen(OIT_SCREEN_PASS, &pixel, &blended)));
             }
             if (sure == 0) continue;
             fragment.coverage = sure;
 
-            const float passes = oit_passes(&lights);
-            for (int i = 0; i < OIT_CUTS; ++i) {
-                if (is_cut >> i & 1) continue;
-                if (i < OIT_LAYER_COUNT ? layers != oit_layer_counts[i]
-                                        : passes > oit_epsilons[i - OIT_LAYER_COUNT])
-                    continue;
-                is_cut |= 1u << i;
-                cut[i] = oit_mean_seen(OIT_SCREEN_PASS, &pixel, &lights);
-                if (i < OIT_LAYER_COUNT) behind[i] = passes;
-            }
-            oit_next_layer(&order, &pixel, &resolution, &lights, &fragment, brightest, last_depth);
+            const float passes = oit_passes(&blended);
+            oit_cut(&cuts, OIT_SCREEN_PASS, &pixel, &blended, layers, passes);
+            oit_next_layer(&order, &pixel, &resolution, &blended, &fragment, brightest, last_depth);
             oit_add_packing(&packing, &pixel.frame, &fragment, passes, brightest);
             shares += passes * fragment.alpha;
-            oit_add(&lights, &pixel, &fragment);
+            oit_add(&blended, &pixel, &fragment);
             ++layers;
             own.most[OIT_OPACITY] = fmax(own.most[OIT_OPACITY], fragment.alpha);
             own.most[OIT_OPACITY + 1] = fmax(own.most[OIT_OPACITY + 1], -fragment.alpha);
         }
 
-        const float3 seen = oit_mean_seen(OIT_SCREEN_PASS, &pixel, &lights);
+        const float3 seen = oit_mean_seen(OIT_SCREEN_PASS, &pixel, &blended);
         const float3 encoded = oit_srgb3(seen);
         const float3 off = oit_rounding(&pixel.frame, seen, layers, shares, brightest);
         const float3 certain = oit_encoded_error3(seen, off) + OIT_ENCODING_ERROR;
@@ -347,10 +373,11 @@ kernel void oit_survey(CELLIST_LISTS(OIT_NODE, fragments), const OitResolution r
                           oit_encoded_error3(seen, error) + OIT_ENCODING_ERROR);
         }
         for (int i = 0; i < OIT_CUTS; ++i) {
-            const float3 error = is_cut >> i & 1 ? fabs(oit_srgb3(cut[i]) - encoded) : 0.0f;
+            const float3 error =
+                cuts.reached >> i & 1 ? fabs(oit_srgb3(cuts.seen[i]) - encoded) : 0.0f;
             oit_add_bound(&own, OIT_FIRST_LAYERS + i, error + certain);
         }
-        for (int i = 0; i < OIT_LAYER_COUNT; ++i) own.most[OIT_LIGHT_BEHIND + i] = behind[i];
+        for (int i = 0; i < OIT_LAYER_COUNT; ++i) own.most[OIT_LIGHT_BEHIND + i] = cuts.passes[i];
         own.most[OIT_LONGEST] = (float)layers;
         own.sum[OIT_UNRESOLVED] = float_order > 0.0f;
         for (int kind = 1; kind < OIT_DEPTHS_OF_NODES; ++kind)

@@ -26,8 +26,8 @@ constexpr std::array depths_of_nodes{NodeFormat::float32, NodeFormat::rgba8_d24c
 constexpr std::array<NodeFormat, packed_formats> packed{
     NodeFormat::rgba16f, NodeFormat::rgba8, NodeFormat::rgba8_d24c8, NodeFormat::rgb565_d16};
 
-// In float, of the brightest colour, and sRGB encoding in float. 2^-15 are the 512 * 2^-24 of shading
-// that docs/numerics.md derives.
+// In float, of the brightest colour, and sRGB encoding in float. 2^-15 are the 512 * 2^-24 of
+// shading that docs/numerics.md derives.
 constexpr std::string_view errors =
     "#define OIT_SHADING_ERROR 0x1p-15f\n#define OIT_ENCODING_ERROR 0x1p-19f\n";
 
@@ -126,7 +126,7 @@ public:
         source_.follow();
         source_.transform();
         do source_.prepare();
-        while (!source_.complete());
+        while (!source_.finish_or_grow());
         run();
         return read(Metrics(metrics_.download(), maxima(), sums()));
     }
@@ -224,33 +224,36 @@ const std::string& list_pass_text() {
 
 }  // namespace
 
+// The drawing with lists of one node type.
+template <class Node>
+class Survey::ListDrawing : public Survey::Drawing {
+public:
+    ListDrawing(const cellist::Device& device, const Frame& frame,
+                std::vector<std::uint32_t> layers, std::vector<float> epsilons)
+        : Drawing(device, frame, std::move(layers), std::move(epsilons)),
+          fragments_(device, source().shape()),
+          pass_(source().pass(list_pass_text(), "lists.cl", fragments_)),
+          survey_(source().screen_kernel(survey_text(), "survey.cl", "oit_survey", fragments_,
+                                         cellist::type<OitResolution>)) {}
+
+protected:
+    void run() override {
+        fragments_.build([&] { source().draw(pass_, fragments_); });
+        fragments_.sort(&Node::key);
+        source().run_on_screen(survey_, fragments_, resolution(), uncertainty(), metrics());
+    }
+
+private:
+    cellist::Lists<Node> fragments_;
+    raster::Pass pass_;
+    cellist::Kernel survey_;
+};
+
 Survey::Survey(const cellist::Device& device, const Frame& frame, std::vector<std::uint32_t> layers,
                std::vector<float> epsilons) {
-    // The lists of one node type.
     const auto make = [&]<class Node>(const Node*) -> std::unique_ptr<Drawing> {
-        class Lists : public Drawing {
-        public:
-            Lists(const cellist::Device& of, const Frame& drawn,
-                  std::vector<std::uint32_t> layer_counts, std::vector<float> parts)
-                : Drawing(of, drawn, std::move(layer_counts), std::move(parts)),
-                  fragments_(of, source().shape()),
-                  pass_(source().pass(list_pass_text(), "lists.cl", fragments_)),
-                  survey_(source().screen_kernel(survey_text(), "survey.cl", "oit_survey",
-                                                 fragments_, cellist::type<OitResolution>)) {}
-
-        protected:
-            void run() override {
-                fragments_.build([&] { source().draw(pass_, fragments_); });
-                fragments_.sort(&Node::key);
-                source().run_on_screen(survey_, fragments_, resolution(), uncertainty(), metrics());
-            }
-
-        private:
-            cellist::Lists<Node> fragments_;
-            raster::Pass pass_;
-            cellist::Kernel survey_;
-        };
-        return std::make_unique<Lists>(device, frame, std::move(layers), std::move(epsilons));
+        return std::make_unique<ListDrawing<Node>>(device, frame, std::move(layers),
+                                                   std::move(epsilons));
     };
     const Frame exact = exact_frame(frame);
     drawing_ = with_node_type(node_layout(exact.quality, features_of(exact)).words, make);

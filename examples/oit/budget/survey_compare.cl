@@ -1,6 +1,6 @@
-// How far a picture is from the survey's, and from the truth at most. metrics: see metrics.clh; bounds
-// are those errors without and with what depends on an order that float depths do not tell; the third sum
-// counts the pixels in which this makes an error greater than the limit.
+// How far a picture is from the survey's, and from the truth at most. metrics: see metrics.clh;
+// bounds are those errors without and with what depends on an order that float depths do not tell;
+// the third sum counts the pixels in which this makes an error greater than the limit.
 //   other        the picture
 //   uncertainty  see survey.cl
 kernel void oit_compare(global const float4* other, global const float4* uncertainty, float limit,

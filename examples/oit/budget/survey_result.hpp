@@ -10,8 +10,9 @@
 
 namespace oit {
 
-/// What a survey found out about a frame. Errors are upper bounds against the truth; where they do not
-/// say otherwise, apart from what depends on an order of layers that float depths do not resolve.
+/// What a survey found out about a frame. Errors are upper bounds against the truth; where they do
+/// not say otherwise, apart from what depends on an order of layers that float depths do not
+/// resolve.
 struct SurveyResult {
     /// Blending ends behind the nearest layers, or where little light passes.
     struct Cut {

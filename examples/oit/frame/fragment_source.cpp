@@ -135,10 +135,12 @@ FragmentSource::FragmentSource(const cellist::Device& device, const Frame& frame
       projection_(device, setup_, geometry_, placed_at(frame.scene, frame.time), frame.views),
       transparent_(device, projection_, chosen(frame.scene, false)),
       materials_(device, frame.scene.materials),
+      opacities_(device,
+                 features_.opacities ? opacities_of(frame.scene) : std::vector<cl_float>(1)),
+      tints_(device, features_.tints ? tints_of(frame.scene) : std::vector<cl_float>(1)),
+      no_depth_bits_(device, 1),
       screen_(screen_of(frame, resolves_samples(frame.quality) ? samples_of(frame.quality) : 1)),
       image_(device, (is_reduced(frame) ? 2 : 1) * frame.pixels()) {
-    if (features_.opacities) opacities_.emplace(device, opacities_of(frame.scene));
-    if (features_.tints) tints_.emplace(device, tints_of(frame.scene));
     if (features_.opaque) opaque_ = std::make_unique<Opaque>(*this);
     if (resolves_samples(frame.quality)) {
         sample_image_.emplace(device, frame.pixels() * samples_of(frame.quality));
@@ -170,10 +172,8 @@ void FragmentSource::prepare() {
     passes.owners.fill(no_owner);
     passes.triangles.draw(passes.depth, o.depth_bits);
     passes.triangles.draw(passes.owner, passes.owners, o.depth_bits);
-    with(tints_, [&](const auto&... tints) {
-        passes.triangles.draw(passes.colour, passes.owners, o.depth_bits, o.colour, constants_,
-                              materials_, geometry_.normals(), tints...);
-    });
+    passes.triangles.draw(passes.colour, passes.owners, o.depth_bits, o.colour, constants_,
+                          materials_, geometry_.normals(), tints_);
 }
 
 void FragmentSource::set_slice(const cellist::Slice& slice) {
@@ -187,9 +187,9 @@ void FragmentSource::finish() {
                       static_cast<cl_uint>(image_.size()));
 }
 
-bool FragmentSource::complete() {
-    const bool opaque = !opaque_ || !opaque_->passes || opaque_->passes->triangles.complete();
-    return transparent_.complete() && opaque;
+bool FragmentSource::finish_or_grow() {
+    const bool opaque = !opaque_ || !opaque_->passes || opaque_->passes->triangles.finish_or_grow();
+    return transparent_.finish_or_grow() && opaque;
 }
 
 cellist::Shape FragmentSource::shape() const {
@@ -223,8 +223,8 @@ std::uint64_t FragmentSource::device_bytes() const {
     std::uint64_t bytes = geometry_.device_bytes() + projection_.device_bytes() +
                           transparent_.device_bytes() + materials_.size() * sizeof(Material) +
                           image_.size() * sizeof(cl_float4);
-    if (opacities_) bytes += opacities_->size() * sizeof(cl_float);
-    if (tints_) bytes += tints_->size() * sizeof(cl_float);
+    if (features_.opacities) bytes += opacities_.size() * sizeof(cl_float);
+    if (features_.tints) bytes += tints_.size() * sizeof(cl_float);
     if (sample_image_) bytes += sample_image_->size() * sizeof(cl_float4);
     if (!opaque_) return bytes;
     bytes +=

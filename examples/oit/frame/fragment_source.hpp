@@ -24,13 +24,14 @@ namespace oit {
 inline constexpr cl_uint infinity_bits =
     std::bit_cast<cl_uint>(std::numeric_limits<cl_float>::infinity());
 
-/// What all methods have in common: projects a frame's scene, draws its opaque surfaces, and hands the
-/// transparent fragments in front of them to a method's pass; then kernels over the pixels make the
-/// image.
+/// What all methods have in common: projects a frame's scene, draws its opaque surfaces, and hands
+/// the transparent fragments in front of them to a method's pass; then kernels over the pixels make
+/// the image.
 class FragmentSource {
 public:
-    /// Refers to the device and the frame, which must outlive it. Throws InputError where the user's
-    /// blend function does not compile, cellist::Error where the device cannot hold the image.
+    /// Refers to the device and the frame, which must outlive it. Throws InputError where the
+    /// user's blend function does not compile, cellist::Error where the device cannot hold the
+    /// image.
     FragmentSource(const cellist::Device& device, const Frame& frame);
 
     /// The frame has another time, or other views of the same size. Blocks.
@@ -43,15 +44,17 @@ public:
     /// Quality::reduce, the opaque depths are the caller's to write.
     void prepare();
 
-    /// Whether everything was drawn since prepare(). If not, there is room for it now, and the frame
-    /// begins again there. Blocks.
-    [[nodiscard]] bool complete();
+    /// Waits until everything is drawn since prepare(). False if something had no room: its buffers
+    /// have grown then, and the frame begins again at prepare().
+    [[nodiscard]] bool finish_or_grow();
 
-    /// From now on, kernels over the pixels blend those of the slice alone: see Frame::memory_bytes.
+    /// From now on, kernels over the pixels blend those of the slice alone: see
+    /// Frame::memory_bytes.
     void set_slice(const cellist::Slice& slice);
 
     /// The kernels of a pass: `source` defines OIT_TARGET, OIT_TARGET_PASS and oit_store (see
-    /// surface.clh), where OIT_PASS is defined. `uses` are containers and types, as in cellist::Kernel.
+    /// surface.clh), where OIT_PASS is defined. `uses` are containers and types, as in
+    /// cellist::Kernel.
     template <class... Uses>
     [[nodiscard]] raster::Pass pass(std::string_view source, const std::string& file_name,
                                     const Uses&... uses) const {
@@ -65,14 +68,8 @@ public:
     /// Enqueues a pass over all transparent fragments; `targets` are those of OIT_TARGET.
     template <class... Targets>
     void draw(raster::Pass& pass, const Targets&... targets) {
-        with(tints_, [&](const auto&... tints) {
-            with(opacities_, [&](const auto&... opacities) {
-                with(depth_bits(), [&](const auto&... depths) {
-                    transparent_.draw(pass, targets..., constants_, materials_, geometry_.normals(),
-                                      tints..., opacities..., depths...);
-                });
-            });
-        });
+        transparent_.draw(pass, targets..., constants_, materials_, geometry_.normals(), tints_,
+                          opacities_, opaque_ ? opaque_->depth_bits : no_depth_bits_);
     }
 
     /// A kernel over the pixels: its last parameters are OIT_SCREEN (see blend.clh).
@@ -116,11 +113,12 @@ public:
     }
     /// Width, height and eyes: a cell for each pixel.
     [[nodiscard]] cellist::Shape shape() const;
-    /// The linear image, eye by eye, row by row from the top. With Quality::reduce, two vectors a pixel:
-    /// what the transparent surfaces add, and the part of the light behind that they let pass.
+    /// The linear image, eye by eye, row by row from the top. With Quality::reduce, two vectors a
+    /// pixel: what the transparent surfaces add, and the part of the light behind that they let
+    /// pass.
     [[nodiscard]] const cellist::Buffer<cl_float4>& image() const { return image_; }
-    /// The least depth of the opaque surfaces in each sample, as the bits of floats; null where there are
-    /// none.
+    /// The least depth of the opaque surfaces in each sample, as the bits of floats; null where
+    /// there are none.
     [[nodiscard]] const cellist::Buffer<cl_uint>* depth_bits() const {
         return opaque_ ? &opaque_->depth_bits : nullptr;
     }
@@ -147,15 +145,6 @@ private:
         explicit Opaque(const FragmentSource& source);
     };
 
-    // Calls use() with a buffer, or without it where it is not there.
-    template <class Optional, class Use>
-    static void with(const Optional& buffer, const Use& use) {
-        if (buffer)
-            use(*buffer);
-        else
-            use();
-    }
-
     [[nodiscard]] raster::Sampling sampling() const;
     // The parts, after the macros that they name.
     [[nodiscard]] std::string with_defines(std::initializer_list<std::string_view> parts) const;
@@ -174,9 +163,10 @@ private:
     raster::Projection projection_;
     raster::Triangles transparent_;
     cellist::Buffer<Material> materials_;
-    // Of vertices, as geometry_ has them.
-    std::optional<cellist::Buffer<cl_float>> opacities_;
-    std::optional<cellist::Buffer<cl_float>> tints_;  ///< 3 each
+    // Of vertices, as geometry_ has them. One float, which no kernel reads, if no model has any.
+    cellist::Buffer<cl_float> opacities_;
+    cellist::Buffer<cl_float> tints_;         ///< 3 each
+    cellist::Buffer<cl_uint> no_depth_bits_;  ///< stands in for those of Opaque
     std::unique_ptr<Opaque> opaque_;
     cellist::Range screen_;
     cellist::Buffer<cl_float4> image_;

@@ -27,7 +27,8 @@ struct BlendFunction {
 struct Quality {
     int samples = 1;  ///< of a pixel: 1, 2, 4 or 8
     Resolve resolve = Resolve::per_pixel;
-    /// Fragments have the slopes of their depth, and each sample blends them in the order that it sees.
+    /// Fragments have the slopes of their depth, and each sample blends them in the order that it
+    /// sees.
     bool depth_range = false;
     NodeFormat format = NodeFormat::float32;
     DepthScale depth_scale = DepthScale::linear;
@@ -35,8 +36,8 @@ struct Quality {
     std::optional<std::uint32_t> layers = {};
     /// Blending ends where no more than this part of the light passes.
     float epsilon = 0;
-    /// Transparent surfaces are drawn with as many times fewer pixels a side, 1, 2 or 4, and enlarged
-    /// along the edges of the opaque ones: see reduction.hpp.
+    /// Transparent surfaces are drawn with as many times fewer pixels a side, 1, 2 or 4, and
+    /// enlarged along the edges of the opaque ones: see reduction.hpp.
     int reduce = 1;
     /// What the method is compiled for, of MethodInfo::sizes; none means its default.
     std::optional<std::uint32_t> size = {};

@@ -112,9 +112,9 @@ std::uint32_t state_floats(const Quality& quality, const FrameFeatures& features
     const std::uint32_t transmittance = features.transmittance_is_coloured() ? 3 : 1;
     const std::uint32_t depth = features.has(Blend::absorb) || features.has(Blend::user) ? 1 : 0;
     const std::uint32_t extinction = features.has(Blend::absorb) ? 3 : 0;
-    const auto lights =
+    const auto samples =
         quality.resolve == Resolve::per_sample ? 1 : static_cast<std::uint32_t>(quality.samples);
-    return lights * (3 + transmittance + depth + extinction);
+    return samples * (3 + transmittance + depth + extinction);
 }
 
 std::string defines_of(const Frame& frame, const FrameFeatures& features) {

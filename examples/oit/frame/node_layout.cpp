@@ -151,25 +151,4 @@ DepthResolution NodeLayout::depth_resolution(const FrameFeatures& features) cons
     return resolution;
 }
 
-double NodeLayout::colour_error(const FrameFeatures& features) const {
-    const auto most = static_cast<double>(features.colour_max);
-    // Half a step of the square root r, at r = 1: (r + h)^2 - r^2.
-    const auto of_root = [&](double steps) { return most * (1 / steps + 0.25 / (steps * steps)); };
-    switch (format) {
-        case NodeFormat::float32:
-            return 0;
-        case NodeFormat::rgba16f:
-            return most * 0x1p-11;
-        case NodeFormat::rgb565_d16:
-            return of_root(31);
-        default:
-            return of_root(255);
-    }
-}
-
-double NodeLayout::alpha_error() const {
-    if (alpha.bits == 0 || alpha.bits == 32) return 0;
-    return alpha.bits == 16 ? 0x1p-12 : 0.5 / 255;
-}
-
 }  // namespace oit

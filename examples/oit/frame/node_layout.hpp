@@ -30,9 +30,9 @@ OIT_DEFINE_NODE(6);
 OIT_DEFINE_NODE(7);
 #undef OIT_DEFINE_NODE
 
-/// The device resolves two depths if they differ by more than this part of the greater
-/// one. The device's depth is off by a factor of at most 1 +- 8 * 2^-24 (see triangle.clh); two of them
-/// by twice that.
+/// The device resolves two depths if they differ by more than this part of the greater one. The
+/// device's depth is off by a factor of at most 1 +- 8 * 2^-24 (see triangle.clh); two of them by
+/// twice that.
 inline constexpr double depth_resolution = 16.0 / (1 << 24);
 
 /// Some bits of a word of a node.
@@ -52,8 +52,8 @@ struct DepthResolution {
     }
 };
 
-/// What lies where in the nodes of a frame. Colour and depth lie where the format says; members that
-/// only some frames need fill what room the format leaves, or words of their own.
+/// What lies where in the nodes of a frame. Colour and depth lie where the format says; members
+/// that only some frames need fill what room the format leaves, or words of their own.
 struct NodeLayout {
     NodeFormat format = NodeFormat::float32;
     DepthScale depth_scale = DepthScale::linear;
@@ -64,13 +64,9 @@ struct NodeLayout {
     NodeField blend = {};        ///< Blend; 6 where a surface is left
     NodeField depth_range = {};  ///< two halves: how much 1 / depth grows a pixel, along x and y
 
-    /// The depth in a key. `needs` gives the range of quantised depths.
+    /// The depth in a key. `features` gives the range of quantised depths.
     [[nodiscard]] double depth_of(std::uint32_t key, const FrameFeatures& features) const;
     [[nodiscard]] DepthResolution depth_resolution(const FrameFeatures& features) const;
-    /// How far a channel of a colour in a node is from the fragment's, at most.
-    [[nodiscard]] double colour_error(const FrameFeatures& features) const;
-    /// The same for an opacity.
-    [[nodiscard]] double alpha_error() const;
 };
 
 [[nodiscard]] NodeLayout node_layout(const Quality& quality, const FrameFeatures& features);

@@ -5,9 +5,9 @@
 
 static inline void raster_emit(RASTER_TARGET, const View* view,
                                global const RasterInstance* instance, uint piece,
-                               const RasterFragment* sample) {
-    const size_t pixel = oit_pixel_index(view, instance->eye, sample->x, sample->y);
+                               const RasterFragment* covered) {
+    const size_t pixel = oit_pixel_index(view, instance->eye, covered->x, covered->y);
     for (int s = 0; s < OIT_SAMPLES; ++s)
-        if (sample->coverage >> s & 1)
-            atomic_min(&depth_bits[pixel * OIT_SAMPLES + s], as_uint(sample->depth));
+        if (covered->coverage >> s & 1)
+            atomic_min(&depth_bits[pixel * OIT_SAMPLES + s], as_uint(covered->depth));
 }

@@ -1,13 +1,13 @@
-// Between the full image and the reduced one, each of whose pixels stands for OIT_BLOCK x OIT_BLOCK of the
-// full one's.
+// Between the full image and the reduced one, each of whose pixels stands for OIT_BLOCK x OIT_BLOCK
+// of the full one's.
 
 // Opaque depths that differ by this part of the farther one agree by half.
 #define OIT_TOLERANCE 0.02f
 // Of a pixel that bilinear interpolation leaves out.
 #define OIT_LEAST_WEIGHT 1e-3f
 
-// reduced: the greatest of the opaque depths of each block, as bits of floats, which are ordered as they
-// are.
+// reduced: the greatest of the opaque depths of each block, as bits of floats, which are ordered as
+// they are.
 kernel void oit_shrink(global const uint* depths, global uint* reduced, int width, int height) {
     const int x = get_global_id(0), y = get_global_id(1);
     const size_t eye = get_global_id(2);
@@ -18,8 +18,8 @@ kernel void oit_shrink(global const uint* depths, global uint* reduced, int widt
     reduced[(eye * get_global_size(1) + y) * get_global_size(0) + x] = farthest;
 }
 
-// How well two opaque depths agree, from 1 where they are equal to 0; infinity is one of them. Never 0, so
-// that the nearest counts where none agrees.
+// How well two opaque depths agree, from 1 where they are equal to 0; infinity is one of them.
+// Never 0, so that the nearest counts where none agrees.
 static inline float oit_agreement(float a, float b) {
     const float near = 1.0f / fmin(a, b), far = 1.0f / fmax(a, b);
     const float apart = (near - far) / fmax(near, 1e-30f);

@@ -12,7 +12,8 @@ raster::View reduced_view(const raster::View& view, int block) {
     reduced.width = (view.width + block - 1) / block;
     reduced.height = (view.height + block - 1) / block;
     const auto scale_row = [&](cl_float(&row)[4], int side, int reduced_side) {
-        // Clip coordinates are relative to the middle of the image, which moves if blocks stand out.
+        // Clip coordinates are relative to the middle of the image, which moves if blocks stand
+        // out.
         const double shift =
             0.5 * RASTER_SUBPIXELS * (static_cast<double>(side) / block - reduced_side);
         for (int i = 0; i < 4; ++i)
@@ -96,7 +97,7 @@ void Reduction::follow() {
 void Reduction::prepare(const FragmentSource& transparent) {
     // The reduced frame begins with what is drawn here, so nothing may be missing.
     do source_.prepare();
-    while (!source_.complete());
+    while (!source_.finish_or_grow());
     source_.run_on_screen(backdrop_);
     if (const cellist::Buffer<cl_uint>* depths = source_.depth_bits())
         shrink_.run(pixels_of(reduced_), *depths, *transparent.depth_bits(),

@@ -10,15 +10,16 @@ namespace oit {
 
 /// Transparent surfaces at reduced resolution, in front of opaque ones at full resolution.
 ///
-/// A pixel of the reduced image stands for a block of the full one. It takes the fragments in front of the
-/// farthest opaque surface of its block, so that nothing is lost that is seen in any of its pixels. What
-/// they add, and what they let pass, is enlarged to the full image: each pixel takes a mean of the reduced
-/// pixels around it, weighted by nearness and by how well their opaque depth agrees with its own (joint
-/// bilateral upsampling: Kopf, Cohen, Lischinski, Uyttendaele, SIGGRAPH 2007).
+/// A pixel of the reduced image stands for a block of the full one. It takes the fragments in front
+/// of the farthest opaque surface of its block, so that nothing is lost that is seen in any of its
+/// pixels. What they add, and what they let pass, is enlarged to the full image: each pixel takes a
+/// mean of the reduced pixels around it, weighted by nearness and by how well their opaque depth
+/// agrees with its own (joint bilateral upsampling: Kopf, Cohen, Lischinski, Uyttendaele, SIGGRAPH
+/// 2007).
 class Reduction {
 public:
-    /// Refers to the device and the frame, which must outlive it. Throws InputError where the frame has
-    /// several samples a pixel.
+    /// Refers to the device and the frame, which must outlive it. Throws InputError where the frame
+    /// has several samples a pixel.
     Reduction(const cellist::Device& device, const Frame& frame);
 
     /// The frame whose transparent surfaces are drawn.

@@ -1,8 +1,8 @@
-// Adaptive transparency (Salvi, Montgomery, Lefohn, HPG 2011): how much light reaches a depth is kept as
-// a step function of at most OIT_STEPS steps; where there are more, the one goes whose loss changes the
-// area under the function least. Fragments come from lists sorted by key, so that the image does not
-// depend on the order in which they were inserted. Fragments at one depth make one step, and are
-// blended in their order, as if they were one fragment.
+// Adaptive transparency (Salvi, Montgomery, Lefohn, HPG 2011): how much light reaches a depth is
+// kept as a step function of at most OIT_STEPS steps; where there are more, the one goes whose loss
+// changes the area under the function least. Fragments come from lists sorted by key, so that the
+// image does not depend on the order in which they were inserted. Fragments at one depth make one
+// step, and are blended in their order, as if they were one fragment.
 
 // Behind depth[i], the part passes[i] of the light comes through; ascending.
 typedef struct {
@@ -40,7 +40,8 @@ static inline void oit_limit(OitSteps* steps) {
     --steps->count;
 }
 
-// A fragment behind all so far, or at the depth of the last. That step is whole before one has to go.
+// A fragment behind all so far, or at the depth of the last. That step is whole before one has to
+// go.
 static inline void oit_step(OitSteps* steps, const OitFragment* fragment) {
     float passes = 1.0f;
     if (steps->count > 0) {
@@ -60,8 +61,8 @@ kernel void oit_resolve_adaptive(CELLIST_LISTS(OIT_NODE, fragments), OIT_SCREEN)
     OitPixel pixel;
     if (!oit_pixel(OIT_SCREEN_PASS, &pixel)) return;
     const uint cell = cellist_cell3(fragments, pixel.x, pixel.y, pixel.eye);
-    OitLights lights = oit_lights();
-    for (int i = 0; i < OIT_LIGHTS; ++i) {
+    OitBlendState blended = oit_blend_state();
+    for (int i = 0; i < OIT_BLENDED_SAMPLES; ++i) {
         OitSteps steps;
         steps.count = 0;
         cellist_for_each(fragments, cell, node) {
@@ -75,10 +76,10 @@ kernel void oit_resolve_adaptive(CELLIST_LISTS(OIT_NODE, fragments), OIT_SCREEN)
             if (!oit_covers(&pixel, &fragment, i)) continue;
             if (fragment.depth > depth) reaches = oit_reaches(&steps, fragment.depth);
             depth = fragment.depth;
-            lights.of[i].colour += reaches * fragment.alpha * fragment.colour;
+            blended.of[i].colour += reaches * fragment.alpha * fragment.colour;
             reaches *= 1.0f - fragment.alpha;
         }
-        if (steps.count > 0) lights.of[i].transmittance = steps.passes[steps.count - 1];
+        if (steps.count > 0) blended.of[i].transmittance = steps.passes[steps.count - 1];
     }
-    oit_write(OIT_SCREEN_PASS, &pixel, &lights);
+    oit_write(OIT_SCREEN_PASS, &pixel, &blended);
 }

@@ -1,14 +1,14 @@
-// Bucket depth peeling: each pass takes the nearest layer of each of OIT_BUCKETS ranges of depth. Behind
-// a range with more than one layer the order of the others is not known, so what is behind it is taken
-// again by the next passes, which divide what is left anew.
+// Bucket depth peeling: each pass takes the nearest layer of each of OIT_BUCKETS ranges of depth.
+// Behind a range with more than one layer the order of the others is not known, so what is behind
+// it is taken again by the next passes, which divide what is left anew.
 //   begin    a pixel's key that everything in front of has been blended; OIT_LAST_KEY at the end
 //   range    least and greatest depth of what is left, as bits of floats
 //   buckets  least key of each range of depth
 //   counts   fragments in each
 //   nodes    the layers that were taken
 //   state    what has been blended
-// The passes: with OIT_FIND_RANGE; then alternately with OIT_FIND_KEYS and with neither, which takes
-// the layers.
+// The passes: with OIT_FIND_RANGE; then alternately with OIT_FIND_KEYS and with neither, which
+// takes the layers.
 
 static inline uint oit_bucket(float depth, float least, float greatest) {
     const float part = (depth - least) / fmax(greatest - least, 1e-30f);
@@ -50,18 +50,18 @@ kernel void oit_peel_buckets(global ulong* begin, global uint* range, global ulo
                              global uint* left, uint first, OIT_SCREEN) {
     OitPixel pixel;
     if (!oit_pixel(OIT_SCREEN_PASS, &pixel)) return;
-    OitLights lights = oit_lights();
+    OitBlendState blended = oit_blend_state();
     if (!first) {
         if (begin[pixel.pixel] == OIT_LAST_KEY) return;
-        lights = oit_load(state, &pixel);
+        blended = oit_load(state, &pixel);
     }
     ulong then = OIT_LAST_KEY;
     for (uint i = 0; i < OIT_BUCKETS; ++i) {
         const size_t bucket = pixel.pixel * OIT_BUCKETS + i;
         if (counts[bucket] == 0) continue;
-        if (then == OIT_LAST_KEY && !oit_done(&lights, &pixel)) {
+        if (then == OIT_LAST_KEY && !oit_done(&blended, &pixel)) {
             const OitFragment fragment = oit_kept(nodes, bucket, &pixel.frame);
-            oit_add(&lights, &pixel, &fragment);
+            oit_add(&blended, &pixel, &fragment);
             if (counts[bucket] > 1) {
                 then = buckets[bucket] + 1;
                 range[2 * pixel.pixel] = as_uint(oit_depth_of_peeling_key(buckets[bucket]));
@@ -72,6 +72,6 @@ kernel void oit_peel_buckets(global ulong* begin, global uint* range, global ulo
         buckets[bucket] = OIT_LAST_KEY;
     }
     begin[pixel.pixel] = then;
-    oit_save(state, &pixel, &lights);
+    oit_save(state, &pixel, &blended);
 }
 #endif

@@ -1,5 +1,5 @@
-// Dual depth peeling: each pass takes the nearest and the farthest layer that are left. A pixel has two
-// of each: what is in front, then what is behind.
+// Dual depth peeling: each pass takes the nearest and the farthest layer that are left. A pixel has
+// two of each: what is in front, then what is behind.
 //   current  keys of the layers that this pass takes; OIT_FIRST_KEY and OIT_LAST_KEY at the start
 //   next     least and greatest key between them
 //   nodes    the layers that were taken
@@ -28,14 +28,14 @@ static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitLocatio
 
 // Puts a fragment in front of what is blended already. A fragment turns the light behind it into
 // colour + transmittance * light, and so do several.
-static inline void oit_put_in_front(OitLights* lights, const OitPixel* pixel,
+static inline void oit_put_in_front(OitBlendState* blended, const OitPixel* pixel,
                                     const OitFragment* fragment) {
-    OitLights alone = oit_lights();
+    OitBlendState alone = oit_blend_state();
     oit_add(&alone, pixel, fragment);
-    for (int i = 0; i < OIT_LIGHTS; ++i) {
-        lights->of[i].colour =
-            alone.of[i].colour + alone.of[i].transmittance * lights->of[i].colour;
-        lights->of[i].transmittance *= alone.of[i].transmittance;
+    for (int i = 0; i < OIT_BLENDED_SAMPLES; ++i) {
+        blended->of[i].colour =
+            alone.of[i].colour + alone.of[i].transmittance * blended->of[i].colour;
+        blended->of[i].transmittance *= alone.of[i].transmittance;
     }
 }
 
@@ -48,19 +48,19 @@ kernel void oit_peel(global ulong* current, global ulong* next, global const uin
     const size_t front = 2 * pixel.pixel, back = front + 1;
     const ulong near = current[front], far = current[back];
     if (near == OIT_LAST_KEY) return;
-    OitLights front_lights = oit_lights(), back_lights = oit_lights();
+    OitBlendState front_blended = oit_blend_state(), back_blended = oit_blend_state();
     if (near != OIT_FIRST_KEY) {
-        front_lights = oit_load(front_state, &pixel);
-        back_lights = oit_load(back_state, &pixel);
+        front_blended = oit_load(front_state, &pixel);
+        back_blended = oit_load(back_state, &pixel);
         const OitFragment nearest = oit_kept(nodes, front, &pixel.frame);
-        oit_add(&front_lights, &pixel, &nearest);
+        oit_add(&front_blended, &pixel, &nearest);
         if (far != near) {
             const OitFragment farthest = oit_kept(nodes, back, &pixel.frame);
-            oit_put_in_front(&back_lights, &pixel, &farthest);
+            oit_put_in_front(&back_blended, &pixel, &farthest);
         }
     }
-    oit_save(front_state, &pixel, &front_lights);
-    oit_save(back_state, &pixel, &back_lights);
+    oit_save(front_state, &pixel, &front_blended);
+    oit_save(back_state, &pixel, &back_blended);
     current[front] = next[front];
     current[back] = next[back];
     if (next[front] != OIT_LAST_KEY) *left = 1;
@@ -72,12 +72,12 @@ kernel void oit_finish_dual_peeling(global const float* front_state, global cons
                                     OIT_SCREEN) {
     OitPixel pixel;
     if (!oit_pixel(OIT_SCREEN_PASS, &pixel)) return;
-    OitLights lights = oit_load(front_state, &pixel);
-    const OitLights behind = oit_load(back_state, &pixel);
-    for (int i = 0; i < OIT_LIGHTS; ++i) {
-        lights.of[i].colour += lights.of[i].transmittance * behind.of[i].colour;
-        lights.of[i].transmittance *= behind.of[i].transmittance;
+    OitBlendState blended = oit_load(front_state, &pixel);
+    const OitBlendState behind = oit_load(back_state, &pixel);
+    for (int i = 0; i < OIT_BLENDED_SAMPLES; ++i) {
+        blended.of[i].colour += blended.of[i].transmittance * behind.of[i].colour;
+        blended.of[i].transmittance *= behind.of[i].transmittance;
     }
-    oit_write(OIT_SCREEN_PASS, &pixel, &lights);
+    oit_write(OIT_SCREEN_PASS, &pixel, &blended);
 }
 #endif

@@ -1,4 +1,5 @@
-// The scene is drawn once for every two layers, and takes the nearest and the farthest that are left.
+// The scene is drawn once for every two layers, and takes the nearest and the farthest that are
+// left.
 #include "methods/peeling_common.hpp"
 #include "oit_kernels.hpp"
 

@@ -1,7 +1,6 @@
 #include "methods/list_method.hpp"
 
 #include <bit>
-#include <utility>
 
 #include "methods/list_slices.hpp"
 #include "oit_kernels.hpp"
@@ -13,8 +12,8 @@ namespace {
 // sorting the lists is faster.
 constexpr std::uint32_t nearest_max = 16;
 
-// Longest lists that a work-item sorts on its way through them; longer ones are sorted before.
-constexpr std::uint32_t sorted_on_the_way_max = 63;
+// The longest lists that the reader sorts itself; longer ones are sorted before.
+constexpr std::uint32_t sorted_in_reader_max = 63;
 
 bool picks_nearest(const Quality& quality) {
     return quality.layers && *quality.layers <= nearest_max;
@@ -39,9 +38,9 @@ ListReader reader_of(const Quality& quality, const std::optional<ListReader>& re
     return blending_reader(quality, define("OIT_NEAREST", *quality.layers));
 }
 
-// The device is waited for where the length of the lists is not known: in the first frame, and in others that
-// have more fragments than fit. All further ones are enqueued at once, into a pool with room for
-// somewhat more fragments than the first had; or drawn as the first, where there is no such room.
+// The first frame blocks until the lengths of the lists are known. Later frames are enqueued at once,
+// into a pool a quarter larger. A frame that overflows this pool is drawn again as the first. So are
+// all frames if the larger pool cannot be allocated.
 template <class Node>
 class ListMethod : public Method {
 public:
@@ -51,28 +50,27 @@ public:
           options_(options),
           fragments_(lists_with(options)),
           pass_(source.pass(kernels::lists_cl, "lists.cl", *fragments_)),
+          sorts_(needs_sorting(source.frame().quality, reader)),
+          may_sort_in_reader_(!reader && sorts_),
           may_fix_capacity_(keeps_all()),
           longer_(source.device(), 1) {
-        const Quality& quality = source.frame().quality;
-        sorts_ = needs_sorting(quality, reader);
-        may_sort_on_the_way_ = !reader && sorts_;
         // What a sort keeps counts for --memory from the first frame.
         if (sorts_ && source.frame().memory_bytes) fragments_->sort(&Node::key);
-        reader_.emplace(kernel_of(reader_of(quality, reader)));
+        reader_.emplace(kernel_of(reader_of(source.frame().quality, reader)));
     }
 
     void store() override {
-        if (last_lengths_) fix_capacity(*std::exchange(last_lengths_, std::nullopt));
+        if (pool_ == Pool::measured) fix_capacity();
         const auto draw = [this] { source_.draw(pass_, *fragments_); };
-        if (has_fixed_capacity_)
+        if (pool_ == Pool::fixed)
             built_ = fragments_->build_async(draw);
         else
             fragments_->build(draw);
     }
 
     void resolve() override {
-        if (has_fixed_capacity_ && sorter_) {
-            source_.run_on_screen(*sorter_, *fragments_, longer_);
+        if (pool_ == Pool::fixed && unsorted_reader_) {
+            source_.run_on_screen(*unsorted_reader_, *fragments_, longer_);
             longer_read_ = longer_.download_async();
             return;
         }
@@ -80,14 +78,18 @@ public:
         source_.run_on_screen(*reader_, *fragments_);
     }
 
-    [[nodiscard]] bool complete() override {
-        if (!has_fixed_capacity_) {
-            if (may_fix_capacity_) last_lengths_ = fragments_->lengths();
+    [[nodiscard]] bool finish_or_grow() override {
+        if (pool_ != Pool::fixed) {
+            if (may_fix_capacity_) {
+                lengths_ = fragments_->lengths();
+                pool_ = Pool::measured;
+            }
             return true;
         }
         const bool fitted = built_.get().dropped == 0;
-        if (fitted && !(sorter_ && longer_read_.get().front() != 0)) return true;
-        grow_again();
+        if (fitted && !(unsorted_reader_ && longer_read_.get().front() != 0)) return true;
+        *fragments_ = lists_with(options_);
+        pool_ = Pool::growing;
         return false;
     }
 
@@ -106,40 +108,42 @@ public:
     }
 
 private:
+    enum class Pool {
+        growing,   // store() waits for the device, and the pool grows
+        measured,  // as growing, and lengths_ is known: the next store() fixes the capacity
+        fixed,     // store() does not wait, and fragments that do not fit are dropped
+    };
+
     [[nodiscard]] bool keeps_all() const { return options_.overflow == cellist::Overflow::grow; }
 
-    // Makes a pool for as many fragments as there were, and a quarter more. Where that is more than
-    // the budget or the device has, though the demand itself was not, lists go on to grow.
-    void fix_capacity(const cellist::Lengths& lengths) {
+    // Makes a pool for a quarter more fragments than lengths_ says. If that is more than the budget or
+    // the device has, the pool goes on to grow.
+    void fix_capacity() {
         const auto more = [](std::uint64_t n) { return n + n / 4 + 1; };
         cellist::ListsOptions options = options_;
         options.overflow = cellist::Overflow::drop;
         if (options.storage == cellist::Storage::fixed)
-            options.slots = static_cast<std::uint32_t>(more(lengths.longest));
+            options.slots = static_cast<std::uint32_t>(more(lengths_.longest));
         else
-            options.capacity_nodes = more(lengths.total);
-        const std::uint64_t longest = more(lengths.longest);
+            options.capacity_nodes = more(lengths_.total);
+        const std::uint64_t longest = more(lengths_.longest);
         try {
             // The old pool goes first, so that the device never holds both.
             *fragments_ = lists_with(options_);
             *fragments_ = lists_with(options);
         } catch (const cellist::Error&) {
             may_fix_capacity_ = false;
+            pool_ = Pool::growing;
             return;
         }
-        if (may_sort_on_the_way_ && longest <= sorted_on_the_way_max)
-            sorter_.emplace(kernel_of(blending_reader(
+        if (may_sort_in_reader_ && longest <= sorted_in_reader_max)
+            unsorted_reader_.emplace(kernel_of(blending_reader(
                 source_.frame().quality,
                 define("OIT_SORTED", static_cast<std::uint32_t>(std::bit_ceil(longest + 1))))));
         else
-            sorter_.reset();
+            unsorted_reader_.reset();
         longer_.fill(0);
-        has_fixed_capacity_ = true;
-    }
-
-    void grow_again() {
-        *fragments_ = lists_with(options_);
-        has_fixed_capacity_ = false;
+        pool_ = Pool::fixed;
     }
 
     [[nodiscard]] cellist::Lists<Node> lists_with(const cellist::ListsOptions& options) const {
@@ -154,14 +158,14 @@ private:
     cellist::ListsOptions options_;
     std::optional<cellist::Lists<Node>> fragments_;
     raster::Pass pass_;
-    bool sorts_ = false;
-    bool may_sort_on_the_way_ = false;
+    const bool sorts_;
+    const bool may_sort_in_reader_;
     std::optional<cellist::Kernel> reader_;
-    std::optional<cellist::Kernel> sorter_;  // reads lists that are not sorted
+    std::optional<cellist::Kernel> unsorted_reader_;  // of short lists in a fixed pool
     bool may_fix_capacity_;
-    bool has_fixed_capacity_ = false;
-    std::optional<cellist::Lengths> last_lengths_;  // of the last frame, for fix_capacity()
-    cellist::Buffer<cl_uint> longer_;               // not 0 where it met a list that is too long
+    Pool pool_ = Pool::growing;
+    cellist::Lengths lengths_ = {};    // of the last frame, if the pool is measured
+    cellist::Buffer<cl_uint> longer_;  // not 0 if unsorted_reader_ met a list that is too long
     cellist::Pending<cellist::BuildReport> built_;
     cellist::Pending<std::vector<cl_uint>> longer_read_;
 };

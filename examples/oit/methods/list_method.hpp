@@ -17,8 +17,9 @@ struct ListReader {
     std::string kernel;
 };
 
-/// The method that keeps fragments in cellist::Lists with these options, and blends them nearest first;
-/// or leaves that to another reader. Under Frame::memory_bytes, a slice of the pixels at a time.
+/// The method that keeps fragments in cellist::Lists with these options, and blends them nearest
+/// first; or leaves that to another reader. Under Frame::memory_bytes, a slice of the pixels at a
+/// time.
 [[nodiscard]] std::unique_ptr<Method> make_list_method(FragmentSource& source,
                                                        const cellist::ListsOptions& options,
                                                        std::optional<ListReader> reader = {});

@@ -42,7 +42,7 @@ public:
 
     void store() override {
         // Slices are chosen by what there is, so nothing may be missing.
-        while (!source_.complete()) source_.prepare();
+        while (!source_.finish_or_grow()) source_.prepare();
         count_ = 0;
         if (budget() < head_bytes_ + count_bytes_) refuse();
         try {

@@ -1,5 +1,5 @@
-// The methods that keep every fragment in a list of its pixel, whatever the storage (Yang et al. 2010,
-// section 4.1). A container of shape width x height, or width x height x eyes.
+// The methods that keep every fragment in a list of its pixel, whatever the storage (Yang et al.
+// 2010, section 4.1). A container of shape width x height, or width x height x eyes.
 
 #ifdef OIT_PASS
 #define OIT_TARGET CELLIST_LISTS(OIT_NODE, fragments)
@@ -16,8 +16,8 @@ static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitLocatio
 // Blends each pixel's fragments front to back over what is behind them.
 //
 // The lists are sorted by key. With OIT_NEAREST=K they need not be, and the K nearest fragments of
-// each are blended; OIT_LAYERS=K stops after the first K of a sorted list. With OIT_SORTED=N they need
-// not be sorted either, and *longer becomes 1 where one has N fragments or more.
+// each are blended; OIT_LAYERS=K stops after the first K of a sorted list. With OIT_SORTED=N they
+// need not be sorted either, and *longer becomes 1 where one has N fragments or more.
 #ifdef OIT_SORTED
 #define OIT_NEAREST OIT_SORTED
 #define OIT_LONGER , global uint* longer
@@ -29,7 +29,7 @@ kernel void oit_resolve_lists(CELLIST_LISTS(OIT_NODE, fragments) OIT_LONGER, OIT
     OitPixel pixel;
     if (!oit_pixel(OIT_SCREEN_PASS, &pixel)) return;
     const uint cell = cellist_cell3(fragments, pixel.x, pixel.y, pixel.eye);
-    OitLights lights = oit_lights();
+    OitBlendState blended = oit_blend_state();
 #ifdef OIT_NEAREST
     struct OIT_NODE nearest[OIT_NEAREST];
     uint found = cellist_nearest(fragments, cell, key, OIT_NEAREST, nearest);
@@ -39,9 +39,9 @@ kernel void oit_resolve_lists(CELLIST_LISTS(OIT_NODE, fragments) OIT_LONGER, OIT
     found = min(found, (uint)OIT_LAYERS);
 #endif
 #endif
-    for (uint i = 0; i < found && !oit_done(&lights, &pixel); ++i) {
+    for (uint i = 0; i < found && !oit_done(&blended, &pixel); ++i) {
         const OitFragment fragment = oit_unpack(&pixel.frame, nearest[i]);
-        oit_add(&lights, &pixel, &fragment);
+        oit_add(&blended, &pixel, &fragment);
     }
 #else
     uint layer = 0;
@@ -49,12 +49,12 @@ kernel void oit_resolve_lists(CELLIST_LISTS(OIT_NODE, fragments) OIT_LONGER, OIT
 #ifdef OIT_LAYERS
         if (layer++ == OIT_LAYERS) break;
 #endif
-        if (oit_done(&lights, &pixel)) break;
+        if (oit_done(&blended, &pixel)) break;
         const OitFragment fragment = oit_unpack(&pixel.frame, cellist_get(fragments, node));
-        oit_add(&lights, &pixel, &fragment);
+        oit_add(&blended, &pixel, &fragment);
     }
 #endif
-    oit_write(OIT_SCREEN_PASS, &pixel, &lights);
+    oit_write(OIT_SCREEN_PASS, &pixel, &blended);
 }
 
 #endif

@@ -17,10 +17,10 @@ std::vector<MethodInfo>& table() {
 
 MethodRegistration::MethodRegistration(const MethodInfo& info) {
     std::vector<MethodInfo>& methods = table();
-    const auto behind = std::find_if(methods.begin(), methods.end(), [&](const MethodInfo& other) {
+    const auto after = std::find_if(methods.begin(), methods.end(), [&](const MethodInfo& other) {
         return other.position > info.position;
     });
-    methods.insert(behind, info);
+    methods.insert(after, info);
 }
 
 std::span<const MethodInfo> methods() { return table(); }

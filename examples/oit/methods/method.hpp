@@ -33,9 +33,9 @@ public:
     /// Makes the image, with kernels of the source over the pixels. Does not block.
     virtual void resolve() = 0;
 
-    /// Whether the image is whole. If not, there is room for what it lacks now, and store() begins
-    /// again. Blocks.
-    [[nodiscard]] virtual bool complete() { return true; }
+    /// Waits for the image. False if fragments had no room: the method makes room, and the frame
+    /// begins again at store().
+    [[nodiscard]] virtual bool finish_or_grow() { return true; }
 
     /// What the method keeps on the device, beside what the source has.
     [[nodiscard]] virtual std::uint64_t device_bytes() const = 0;
@@ -68,15 +68,15 @@ struct MethodInfo {
     bool exact;                ///< the image of all fragments, up to rounding
     bool cuts = false;         ///< tried with fewer layers and early ends
     bool has_nodes = true;     ///< keeps fragments as nodes, in Quality::format
-    /// What it can be compiled for (layers, trials, steps ...), smallest first: Quality::size. Nothing
-    /// where there is no such choice.
+    /// What it can be compiled for (layers, trials, steps ...), smallest first: Quality::size.
+    /// Nothing where there is no such choice.
     std::span<const std::uint32_t> sizes = {};
     /// Why it cannot draw a frame, or nothing.
     std::string (*refusal)(const Frame& frame, const FrameFeatures& features);
     /// Refers to the source, which must outlive the method.
     std::unique_ptr<Method> (*make)(FragmentSource& source);
-    /// The error of its picture at most, apart from what depends on an order that float depths do not
-    /// tell; nothing where theory has no bound.
+    /// The error of its picture at most, apart from what depends on an order that float depths do
+    /// not tell; nothing where theory has no bound.
     std::optional<PictureError> (*bound)(const SurveyResult& scene,
                                          const Quality& quality) = no_bound;
     /// How often it draws the transparent surfaces, at least.
@@ -95,7 +95,8 @@ public:
 /// Throws InputError, with the names there are, where there is none of this name.
 [[nodiscard]] const MethodInfo& method_named(std::string_view name);
 
-/// The text of a size. Throws InputError, with the sizes there are, where the method has no such size.
+/// The text of a size. Throws InputError, with the sizes there are, where the method has no such
+/// size.
 [[nodiscard]] std::uint32_t read_size_of(const MethodInfo& method, const std::string& text);
 
 /// For methods that draw every frame.

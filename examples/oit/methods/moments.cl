@@ -1,9 +1,9 @@
 // Moment-based transparency (Muenstermann, Krumpen, Klein, Peters: "Moment-Based Order-Independent
 // Transparency", I3D 2018), with four power moments. The first pass sums the absorbances of the
-// fragments of a sample, each times powers of depth; the second finds from these sums how much light
-// reaches each fragment. A mean weighted by this light does not change if all weights of a sample are
-// multiplied by one factor, so they are relative to that of the nearest fragment: the light that
-// reaches a surface of opacity 1 underflows.
+// fragments of a sample, each times powers of depth; the second finds from these sums how much
+// light reaches each fragment. A mean weighted by this light does not change if all weights of a
+// sample are multiplied by one factor, so they are relative to that of the nearest fragment: the
+// light that reaches a surface of opacity 1 underflows.
 //   moments  5 for each sample: of absorbance times depth to the power of 0 ... 4
 //   nearest  the least depth of each sample, as bits of floats
 //   sums     5 for each sample: of colour and weight, and of absorbance
@@ -17,8 +17,8 @@
 #define OIT_TARGET_PASS moments, nearest, sums
 #endif
 
-// The moments of a surface of opacity 1, whose absorbance is infinite, are those of this absorbance:
-// as in the code that the authors published.
+// The moments of a surface of opacity 1, whose absorbance is infinite, are those of this
+// absorbance: as in the code that the authors published.
 #define OIT_MOMENT_ABSORBANCE_MAX 10.0f
 
 // Depth from -1 to 1, evenly by its logarithm.
@@ -34,15 +34,15 @@ static inline float oit_moment_depth(const OitFrame* frame, float depth) {
 // The part of the absorbance at the depth itself that counts as in front of it.
 #define OIT_OVERESTIMATION 0.25f
 
-// Above this absorbance the weights are relative to that of the nearest fragment: up to it, they are
-// 2^-15 at least.
+// Above this absorbance the weights are relative to that of the nearest fragment: up to it, they
+// are 2^-15 at least.
 #define OIT_ABSORBANCE_OF_SMALL_WEIGHTS 10.0f
 // The least weight, relative to that: where all others round to 0, the mean is one by opacity.
 #define OIT_LEAST_WEIGHT 0x1p-24f
 
-// The absorbance in front of the depth z: the least distribution of absorbance with these moments lies
-// at z and at two other depths, the roots of a quadratic; what is in front is summed (section 3.2, and
-// Peters, Klein: "Moment Shadow Mapping", I3D 2015, algorithm 3).
+// The absorbance in front of the depth z: the least distribution of absorbance with these moments
+// lies at z and at two other depths, the roots of a quadratic; what is in front is summed (section
+// 3.2, and Peters, Klein: "Moment Shadow Mapping", I3D 2015, algorithm 3).
 static inline float oit_in_front(global const long* moments, float z) {
     const float b0 = oit_sum(&moments[0]);
     if (!(b0 > 1e-6f)) return 0.0f;

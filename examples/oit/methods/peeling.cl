@@ -1,5 +1,6 @@
 // Depth peeling. A pixel has
-//   current  key of the layer that this pass takes; OIT_FIRST_KEY at the start, OIT_LAST_KEY at the end
+//   current  key of the layer that this pass takes; OIT_FIRST_KEY at the start, OIT_LAST_KEY at
+//            the end
 //   next     least key behind it
 //   nodes    the layer that was taken
 //   state    what has been blended
@@ -27,16 +28,16 @@ kernel void oit_peel(global ulong* current, global ulong* next, global const uin
     if (!oit_pixel(OIT_SCREEN_PASS, &pixel)) return;
     const ulong now = current[pixel.pixel];
     if (now == OIT_LAST_KEY) return;
-    OitLights lights;
+    OitBlendState blended;
     if (now == OIT_FIRST_KEY) {
-        lights = oit_lights();
+        blended = oit_blend_state();
     } else {
-        lights = oit_load(state, &pixel);
+        blended = oit_load(state, &pixel);
         const OitFragment fragment = oit_kept(nodes, pixel.pixel, &pixel.frame);
-        oit_add(&lights, &pixel, &fragment);
+        oit_add(&blended, &pixel, &fragment);
     }
-    oit_save(state, &pixel, &lights);
-    const ulong then = oit_done(&lights, &pixel) ? OIT_LAST_KEY : next[pixel.pixel];
+    oit_save(state, &pixel, &blended);
+    const ulong then = oit_done(&blended, &pixel) ? OIT_LAST_KEY : next[pixel.pixel];
     current[pixel.pixel] = then;
     next[pixel.pixel] = OIT_LAST_KEY;
     if (then != OIT_LAST_KEY) *left = 1;

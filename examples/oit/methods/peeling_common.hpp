@@ -13,7 +13,7 @@ namespace oit {
 inline constexpr cl_ulong first_key = 0;
 inline constexpr cl_ulong last_key = ~cl_ulong{0};
 
-/// A method's source behind what they share.
+/// A method's source, after what they share.
 [[nodiscard]] std::string peeling_text(std::string_view source);
 
 /// They blend all samples of a pixel at once, and one fragment after the other.

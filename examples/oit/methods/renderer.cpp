@@ -53,9 +53,9 @@ void Renderer::resolve() {
     drawn_ = device_.enqueue_marker();
 }
 
-bool Renderer::complete() {
-    const bool drawn = source_.complete();
-    return method_->complete() && drawn;
+bool Renderer::finish_or_grow() {
+    const bool drawn = source_.finish_or_grow();
+    return method_->finish_or_grow() && drawn;
 }
 
 void Renderer::warm_up() {
@@ -80,7 +80,7 @@ void Renderer::start() {
 }
 
 void Renderer::finish() {
-    while (!complete()) {
+    while (!finish_or_grow()) {
         store();
         resolve();
     }
@@ -106,7 +106,7 @@ PassTimes Renderer::draw_by_pass() {
     do {
         measure(&PassTimes::raster_insert_ms, [&] { store(); });
         measure(&PassTimes::sort_blend_ms, [&] { resolve(); });
-    } while (!complete());
+    } while (!finish_or_grow());
     return times;
 }
 

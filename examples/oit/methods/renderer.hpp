@@ -31,12 +31,12 @@ public:
     /// Draws until frames are of one kind: builds the kernels' last variants and grows pools.
     /// Blocks.
     void warm_up();
-    /// Draws once, and blocks until the image is there: milliseconds from clearing to the image. Throws
-    /// InputError where the method needs more than Frame::memory_bytes.
+    /// Draws once, and blocks until the image is there: milliseconds from clearing to the image.
+    /// Throws InputError where the method needs more than Frame::memory_bytes.
     double draw();
-    /// The halves of draw(): the first enqueues the frame, and blocks only where frames are not of one
-    /// kind yet; the second blocks until the image is there. In between, another renderer can start
-    /// the next frame, so that the device does not wait for the host.
+    /// The halves of draw(): the first enqueues the frame, and blocks only where frames are not of
+    /// one kind yet; the second blocks until the image is there. In between, another renderer can
+    /// start the next frame, so that the device does not wait for the host.
     void start();
     void finish();
     /// The same as draw() where the frame has another time, or other views of the same size.
@@ -63,7 +63,7 @@ private:
     void transform();
     void store();
     void resolve();
-    [[nodiscard]] bool complete();
+    [[nodiscard]] bool finish_or_grow();
 
     const cellist::Device& device_;
     std::unique_ptr<Reduction> reduction_;  ///< where Quality::reduce asks for it

@@ -1,8 +1,8 @@
 // Stochastic transparency (Enderton, Sintorn, Shirley, Luebke, I3D 2010), with its depth-based
-// accumulation and its correction of opacity. A fragment of opacity alpha hides what is behind it in
-// each of OIT_TRIALS trials with that probability; its colour counts for the part of the trials in which
-// nothing hides it. What is random is decided by a hash of the pixel, the fragment and the trial, so the
-// image is the same every time. Of each sample:
+// accumulation and its correction of opacity. A fragment of opacity alpha hides what is behind it
+// in each of OIT_TRIALS trials with that probability; its colour counts for the part of the trials
+// in which nothing hides it. What is random is decided by a hash of the pixel, the fragment and the
+// trial, so the image is the same every time. Of each sample:
 //   depths  OIT_TRIALS: least depth that hides, as bits of floats
 //   sums    5: of colour and weight, and of absorbance
 

@@ -1,6 +1,6 @@
-// Weighted blended transparency (McGuire, Bavoil: "Weighted Blended Order-Independent Transparency",
-// JCGT 2013, equations 7 and 10): the mean of all colours, weighted by opacity and nearness, in place of
-// their order. The weights are those of the paper, divided by the greatest.
+// Weighted blended transparency (McGuire, Bavoil: "Weighted Blended Order-Independent
+// Transparency", JCGT 2013, equations 7 and 10): the mean of all colours, weighted by opacity and
+// nearness, in place of their order. The weights are those of the paper, divided by the greatest.
 // sums: 5 for each sample: of colour and weight, and of absorbance.
 
 #define OIT_TARGET volatile global long* sums

@@ -29,8 +29,8 @@ struct Comparison {
     bool has_depths = false;                    ///< counts and depths were compared
 };
 
-/// `depths` are those that the method stored, if it stores all, and are compared where they are of as
-/// many pixels.
+/// `depths` are those that the method stored, if it stores all, and are compared where they are of
+/// as many pixels.
 [[nodiscard]] Comparison compare(const Reference& reference, std::span<const cl_float4> image,
                                  const std::optional<StoredDepths>& depths);
 

@@ -15,9 +15,10 @@ namespace oit {
 
 /// The reference's own projection and clipping, which shares no code with the rasteriser's.
 ///
-/// Where vertices snap to sub-pixels is part of the definition of a picture. Projection<float> computes
-/// these positions as the rasteriser documents them: a fused multiplication and addition at a time, each
-/// rounded to float. Projection<double> computes what the definition approximates; a test compares them.
+/// Where vertices snap to sub-pixels is part of the definition of a picture. Projection<float>
+/// computes these positions as the rasteriser documents them: a fused multiplication and addition
+/// at a time, each rounded to float. Projection<double> computes what the definition approximates;
+/// a test compares them.
 template <class Real>
 class Projection {
 public:
@@ -26,7 +27,8 @@ public:
         std::array<Real, 3> shares;  ///< of the triangle's corners
     };
 
-    /// The part of a triangle in front of the near plane and within the guard band: a convex polygon.
+    /// The part of a triangle in front of the near plane and within the guard band: a convex
+    /// polygon.
     class Polygon {
     public:
         void add(const Vertex& vertex) { vertices_.at(size_++) = vertex; }

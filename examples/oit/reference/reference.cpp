@@ -22,9 +22,9 @@ using glm::dvec3;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Whether the order of two fragments at nearly the same depth matters, where both are blended. A medium of no thickness
-// does nothing, sums and products can be taken in any order, and two surfaces that cover change the
-// picture by no more than the difference of what they add.
+// Whether the order of two fragments at nearly the same depth matters, where both are blended. A
+// medium of no thickness does nothing, sums and products can be taken in any order, and two
+// surfaces that cover change the picture by no more than the difference of what they add.
 bool order_matters(const ReferenceFragment& a, const ReferenceFragment& b) {
     if (a.blend == Blend::absorb || b.blend == Blend::absorb) return false;
     constexpr double visible = 1e-7;

@@ -44,16 +44,16 @@ struct ReferenceOptions {
         blend = {};
 };
 
-/// How much a pixel changes, at most, if two surfaces of Blend::over that follow one another change places:
-/// the product of their opacities and the difference of their colours.
+/// How much a pixel changes, at most, if two surfaces of Blend::over that follow one another change
+/// places: the product of their opacities and the difference of their colours.
 [[nodiscard]] double swap_error(const ReferenceFragment& a, const ReferenceFragment& b);
 
-/// Draws a frame on the CPU, with code of its own from the projection on. Vertices snap to sub-pixels by
-/// the same definition as on the device (see Projection); everything else is in double precision and
-/// exactly sorted: by the depths at the mean of the covered samples, as nodes have them, or with
-/// Quality::depth_range in each sample by the depths there. Blends all fragments of Quality::layers,
-/// whatever epsilon and node format are. Throws InputError where a user's function blends on the device
-/// and none is given here. One thread.
+/// Draws a frame on the CPU, with code of its own from the projection on. Vertices snap to
+/// sub-pixels by the same definition as on the device (see Projection); everything else is in
+/// double precision and exactly sorted: by the depths at the mean of the covered samples, as nodes
+/// have them, or with Quality::depth_range in each sample by the depths there. Blends all fragments
+/// of Quality::layers, whatever epsilon and node format are. Throws InputError where a user's
+/// function blends on the device and none is given here. One thread.
 [[nodiscard]] Reference draw_reference(const Frame& frame, const ReferenceOptions& options = {});
 
 }  // namespace oit

@@ -318,7 +318,7 @@ nlohmann::ordered_json json_of(const Choice& choice, const Budget& budget,
     json["error_with_any_order"] = json_of(choice.errors.all);
     json["bounded"] = choice.bounded;
     json.update(json_of(choice.times));
-    json["turns"] = choice.timed_frames;
+    json["timed_frames"] = choice.timed_frames;
     json["exact_times"] = nullptr;
     if (choice.exact_times) json["exact_times"] = *choice.exact_times;
     json["draws"] = choice.draws;
@@ -331,15 +331,15 @@ nlohmann::ordered_json json_of(const Choice& choice, const Budget& budget,
                      {"pixels_by_layers", choice.scene.pixels_by_layers},
                      {"least_alpha", choice.scene.least_alpha},
                      {"greatest_alpha", choice.scene.greatest_alpha},
-                     {"pixels_untold", choice.scene.pixels_unresolved},
+                     {"pixels_unresolved", choice.scene.pixels_unresolved},
                      {"exact", json_of(choice.scene.exact)}};
     json["candidates"] = nlohmann::ordered_json::array();
     for (const Candidate& candidate : choice.candidates) {
         nlohmann::ordered_json entry{{"setting", text(candidate.setting)},
-                                     {"fate", outcomes[static_cast<int>(candidate.outcome)]}};
+                                     {"outcome", outcomes[static_cast<int>(candidate.outcome)]}};
         if (candidate.error) entry["error"] = json_of(*candidate.error);
         if (candidate.fastest_ms) entry["fastest_ms"] = *candidate.fastest_ms;
-        if (candidate.times_fastest) entry["times_leader"] = *candidate.times_fastest;
+        if (candidate.times_fastest) entry["times_fastest"] = *candidate.times_fastest;
         if (candidate.times) entry.update(json_of(*candidate.times));
         if (candidate.times_chosen) entry["times_chosen"] = *candidate.times_chosen;
         if (!candidate.failure.empty()) entry["failure"] = candidate.failure;

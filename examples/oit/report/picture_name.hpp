@@ -6,7 +6,8 @@
 
 namespace oit {
 
-/// The name of a picture, or of the pictures of all frames: "frame-%04d.png". "%%" is a per cent sign.
+/// The name of a picture, or of the pictures of all frames: "frame-%04d.png". "%%" is a per cent
+/// sign.
 class PictureName {
 public:
     /// Throws InputError for any other use of a per cent sign, and for several numbers.

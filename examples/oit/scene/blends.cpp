@@ -1,5 +1,5 @@
-// A still life of every way to blend: bottles whose content absorbs, filters that multiply, flames that
-// add and glass that covers, on a tray and before rods that are opaque.
+// A still life of every way to blend: bottles whose content absorbs, filters that multiply, flames
+// that add and glass that covers, on a tray and before rods that are opaque.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -38,12 +38,18 @@ Material material_of(const support::MeshMaterial& said, bool has_colours, bool f
     return material;
 }
 
-// Materials that look the same are one.
-using LookKey = std::array<float, 8>;
-LookKey key_of(const Material& m) {
+// Materials with the same key look the same.
+using MaterialKey = std::array<float, 8>;
+MaterialKey key_of(const Material& m) {
     return {m.front_tint[0], m.front_tint[1], m.front_tint[2], m.back_tint[0],
             m.back_tint[1],  m.back_tint[2],  m.alpha,         static_cast<float>(m.blend)};
 }
+
+// The triangles of a mesh that have one material.
+struct MaterialGroup {
+    Material material = {};
+    std::vector<Triangle> triangles = {};
+};
 
 // The part of a mesh with these triangles. Vertices keep their order, so that coincident triangles
 // still start at the same corner.
@@ -105,23 +111,23 @@ void add_mesh(Scene& scene, support::Mesh mesh, float alpha, std::optional<float
         for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
             if (has_opacities(mesh, mesh.triangles[t])) fades[index_of(t)] = 1;
 
-    std::map<LookKey, std::pair<Material, std::vector<Triangle>>> groups;
-    std::vector<std::pair<Material, std::vector<Triangle>>*> look_of;
+    std::map<MaterialKey, MaterialGroup> groups;
+    std::vector<MaterialGroup*> group_of;
     for (std::size_t i = 0; i < said.size(); ++i) {
         const Material material =
             material_of(said[i], !mesh.colours.empty(), fades[i] != 0, alpha, own_alpha);
-        look_of.push_back(&groups[key_of(material)]);
-        look_of.back()->first = material;
+        group_of.push_back(&groups[key_of(material)]);
+        group_of.back()->material = material;
     }
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-        look_of[index_of(t)]->second.push_back(mesh.triangles[t]);
-    std::erase_if(groups, [](const auto& lighting) { return lighting.second.second.empty(); });
+        group_of[index_of(t)]->triangles.push_back(mesh.triangles[t]);
+    std::erase_if(groups, [](const auto& entry) { return entry.second.triangles.empty(); });
     if (groups.size() == 1) {
-        add(std::move(mesh), groups.begin()->second.first);
+        add(std::move(mesh), groups.begin()->second.material);
         return;
     }
-    for (auto& [key, lighting] : groups)
-        add(part_of(mesh, std::move(lighting.second)), lighting.first);
+    for (auto& [key, group] : groups)
+        add(part_of(mesh, std::move(group.triangles)), group.material);
 }
 
 }  // namespace oit

@@ -40,8 +40,8 @@ struct Instance {
     double turns_per_second = 0;
 };
 
-/// What there is to draw: inside of the unit sphere, but for the floor. Instances of opaque materials
-/// hide what lies behind them.
+/// What there is to draw: inside of the unit sphere, but for the floor. Instances of opaque
+/// materials hide what lies behind them.
 struct Scene {
     std::vector<Model> models = {};
     std::vector<Material> materials = {};
@@ -65,13 +65,13 @@ struct Scene {
 /// The surface of the example's pictures.
 [[nodiscard]] Material glass(float alpha);
 
-/// Adds an opaque floor of two large triangles at lighting.floor_height. Its shadow takes the size of
-/// what stands on it.
+/// Adds an opaque floor of two large triangles at lighting.floor_height. Its shadow takes the size
+/// of what stands on it.
 void add_floor(Scene& scene);
 
-/// A mesh with the materials that its file gives, and `glass(alpha)` for what the file does not say.
-/// Surfaces that the file says are opaque hide what lies behind them. The floor, if it is added,
-/// cuts a little into the underside.
+/// A mesh with the materials that its file gives, and `glass(alpha)` for what the file does not
+/// say. Surfaces that the file says are opaque hide what lies behind them. The floor, if it is
+/// added, cuts a little into the underside.
 [[nodiscard]] Scene scene_of(support::Mesh mesh, float alpha);
 
 /// Meshes of several files in one picture, in their common coordinates.

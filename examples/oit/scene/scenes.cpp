@@ -15,10 +15,9 @@ std::vector<SceneInfo>& table() {
 
 SceneRegistration::SceneRegistration(const SceneInfo& info) {
     std::vector<SceneInfo>& scenes = table();
-    const auto behind = std::find_if(scenes.begin(), scenes.end(), [&](const SceneInfo& other) {
-        return other.name > info.name;
-    });
-    scenes.insert(behind, info);
+    const auto after = std::find_if(scenes.begin(), scenes.end(),
+                                    [&](const SceneInfo& other) { return other.name > info.name; });
+    scenes.insert(after, info);
 }
 
 std::span<const SceneInfo> scenes() { return table(); }

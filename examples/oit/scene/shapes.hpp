@@ -21,8 +21,8 @@ enum class Corners { sharp, round };
 
 /// Turns a profile of points (radius, z) about the z axis. The outside is to the right of its
 /// direction: of one that runs up, away from the axis. A closed profile ends with the point that it
-/// starts with. 2 * segments triangles for each part of the profile, half of them where it starts or
-/// ends on the axis.
+/// starts with. 2 * segments triangles for each part of the profile, half of them where it starts
+/// or ends on the axis.
 [[nodiscard]] support::Mesh lathe(std::span<const glm::dvec2> profile, int segments,
                                   Corners corners);
 

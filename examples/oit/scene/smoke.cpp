@@ -1,6 +1,6 @@
-// Surfaces of smoke: rings of particles that rise through an analytic flow leave surfaces behind them,
-// the thinner the more the flow stretches them (von Funck, Weinkauf, Theisel, Seidel: "Smoke Surfaces",
-// IEEE TVCG 2008, section 3).
+// Surfaces of smoke: rings of particles that rise through an analytic flow leave surfaces behind
+// them, the thinner the more the flow stretches them (von Funck, Weinkauf, Theisel, Seidel: "Smoke
+// Surfaces", IEEE TVCG 2008, section 3).
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -22,8 +22,8 @@ constexpr int steps = 280;  ///< of time, each leaving a row of vertices
 constexpr double step = 0.011;
 constexpr double fading = 0.25;  ///< part of the rows over which the oldest smoke dissolves
 
-// A plume that swirls around the y axis, with eddies that grow with height. The eddies are the curl of
-// a vector potential, so they compress nothing.
+// A plume that swirls around the y axis, with eddies that grow with height. The eddies are the curl
+// of a vector potential, so they compress nothing.
 dvec3 velocity(const dvec3& p) {
     const double from_axis_squared = p.x * p.x + p.z * p.z;
     const double swirl = 1.7 * std::exp(-6 * from_axis_squared);

@@ -150,7 +150,7 @@ ordered_json to_json(const Sweep& sweep) {
                                         {"speed_up", factor},
                                         {"speed_up_least", least},
                                         {"speed_up_most", most},
-                                        {"told_apart", is_distinct},
+                                        {"distinct", is_distinct},
                                         {"psnr_db", finite_or_null(m->comparison.psnr_db)},
                                         {"ssim", m->comparison.ssim}});
     json["exact_methods"] = ordered_json::array();
@@ -160,7 +160,7 @@ ordered_json to_json(const Sweep& sweep) {
                                          {"times_linked", factor},
                                          {"times_linked_least", least},
                                          {"times_linked_most", most},
-                                         {"told_apart", is_distinct},
+                                         {"distinct", is_distinct},
                                          {"bytes", m->bytes}});
     json["left_out"] = ordered_json::array();
     for (const auto& [method, reason] : sweep.left_out)

@@ -44,14 +44,14 @@ struct Sweep {
 [[nodiscard]] std::vector<LeftOut> left_out(const Frame& frame,
                                             std::span<const std::string_view> methods);
 
-/// From here on, in dB of PSNR, settings count as equally accurate: the error is less than a step of 16
-/// bits, and what is left is rounding.
+/// From here on, in dB of PSNR, settings count as equally accurate: the error is less than a step
+/// of 16 bits, and what is left is rounding.
 inline constexpr double psnr_enough = 96;
 
 /// Measures the settings interleaved: a part of the frames of each, and then the next part, so that
-/// what slows the machine for a while does not fall to a few of them. `measured` gets what the first
-/// round has found of a setting, and the image; `progress` the finished part of the other rounds.
-/// Blocks.
+/// what slows the machine for a while does not fall to a few of them. `measured` gets what the
+/// first round has found of a setting, and the image; `progress` the finished part of the other
+/// rounds. Blocks.
 [[nodiscard]] std::vector<Measurement> measure_interleaved(
     const cellist::Device& device, const Frame& frame, const Reference& reference,
     std::span<const Setting> settings, std::uint32_t frames,
@@ -64,8 +64,8 @@ inline constexpr double psnr_enough = 96;
 /// Pixels of the reference by layers, as Sweep has them.
 [[nodiscard]] std::vector<std::uint64_t> pixels_by_layers(const Reference& reference);
 
-/// Which measurements no other one beats: none is as fast and as accurate, and better in one of these.
-/// What is slower is slower by measurably_slower().
+/// Which measurements no other one beats: none is as fast and as accurate, and better in one of
+/// these. What is slower is slower by measurably_slower().
 [[nodiscard]] std::vector<bool> pareto_front(std::span<const Measurement> measurements);
 
 /// A measurement, and how many times as long another one takes: by the medians, and at least and at
@@ -80,8 +80,8 @@ struct Relation {
 /// The K nearest layers in lists against all of them, K ascending: the factor is the speed-up.
 [[nodiscard]] std::vector<Relation> fewer_layers(const Sweep& sweep);
 
-/// Exact methods with nodes of floats against `linked`, fastest first: the factor is how many times as
-/// long they take (Yang et al. 2010, Table 1). Nothing where `linked` was not measured.
+/// Exact methods with nodes of floats against `linked`, fastest first: the factor is how many times
+/// as long they take (Yang et al. 2010, Table 1). Nothing where `linked` was not measured.
 [[nodiscard]] std::vector<Relation> exact_methods(const Sweep& sweep);
 
 }  // namespace oit

@@ -23,8 +23,8 @@ struct GridEntry {
 };
 CELLIST_STRUCT(GridEntry, triangle);
 
-/// The cells of a grid: cubes of the same size. Coordinates are multiplied by `unit` first, so that very
-/// large and very small meshes stay in the range of floats.
+/// The cells of a grid: cubes of the same size. Coordinates are multiplied by `unit` first, so that
+/// very large and very small meshes stay in the range of floats.
 struct GridCells {
     cl_float origin[3];
     cl_float unit;            ///< a power of 2

@@ -14,7 +14,8 @@ class ColourTable {
 public:
     explicit ColourTable(RawMesh& mesh) : mesh_(mesh) {}
 
-    /// The material of this linear colour and opacity. Leaves the opacity unset if the file has none.
+    /// The material of this linear colour and opacity. Leaves the opacity unset if the file has
+    /// none.
     std::uint32_t material_of(const glm::vec4& colour, bool has_opacity) {
         const auto [entry, is_new] =
             materials_.try_emplace({colour.r, colour.g, colour.b, colour.a},

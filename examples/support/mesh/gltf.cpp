@@ -23,7 +23,8 @@
 namespace support {
 namespace {
 
-// Elements that instances of meshes may add to those of the file. Bounds the memory for a small file.
+// Elements that instances of meshes may add to those of the file. Bounds the memory for a small
+// file.
 constexpr std::uint64_t limit_repeated_elements = std::uint64_t{1} << 26;
 
 // Extensions that do not change what is drawn: positions, base colours and opacities.
@@ -349,8 +350,8 @@ private:
         return static_cast<std::uint32_t>(material);
     }
 
-    // Counts a triangle with corners below the alpha at which its material becomes visible. Returns whether
-    // all three are, so that it is not drawn.
+    // Counts a triangle with corners below the alpha at which its material becomes visible. Returns
+    // whether all three are, so that it is not drawn.
     [[nodiscard]] bool count_masked(const std::array<std::uint32_t, 3>& triangle,
                                     std::uint32_t material) {
         if (material >= materials_.size() || materials_[material].alpha != GltfAlpha::mask)

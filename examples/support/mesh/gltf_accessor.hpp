@@ -32,8 +32,8 @@ inline constexpr GltfFormat gltf_float32{GltfType::float32, false};
 inline constexpr GltfFormat gltf_unit_uint8{GltfType::uint8, true};
 inline constexpr GltfFormat gltf_unit_uint16{GltfType::uint16, true};
 
-/// The elements of an accessor, all of them checked to lie within their buffer. Refers to the buffers of
-/// a GltfFile, which must outlive it.
+/// The elements of an accessor, all of them checked to lie within their buffer. Refers to the
+/// buffers of a GltfFile, which must outlive it.
 class GltfAccessor {
 public:
     /// `shape` is "SCALAR", "VEC3" and so on. Throws InputError with the accessor's place if it has

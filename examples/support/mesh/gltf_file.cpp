@@ -23,8 +23,8 @@ std::uint32_t word_at(std::string_view text, std::size_t at) {
     return word;
 }
 
-// The nesting depth of arrays and objects, which bounds the stack of a parser, and an upper bound of the
-// number of values, which bounds its memory.
+// The nesting depth of arrays and objects, which bounds the stack of a parser, and an upper bound
+// of the number of values, which bounds its memory.
 struct JsonExtent {
     std::size_t depth = 0, values = 1;
 };

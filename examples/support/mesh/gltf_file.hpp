@@ -15,8 +15,8 @@ namespace support {
 /// The JSON and the buffers of a glTF 2 file, as text or GLB.
 class GltfFile {
 public:
-    /// Throws InputError where the file is damaged or not version 2, or its JSON is nested too deeply.
-    /// `path` and `text` must outlive the object.
+    /// Throws InputError where the file is damaged or not version 2, or its JSON is nested too
+    /// deeply. `path` and `text` must outlive the object.
     GltfFile(const std::filesystem::path& path, std::string_view text);
 
     [[nodiscard]] GltfValue root() const { return {path_, json_, ""}; }
@@ -27,8 +27,8 @@ public:
     [[nodiscard]] GltfValue element(const std::string& array, const GltfValue& index) const;
     [[nodiscard]] std::size_t element_index(const std::string& array, const GltfValue& index) const;
 
-    /// The bytes of a buffer, at least as many as its `byteLength`. Reads files in the mesh's folder
-    /// only.
+    /// The bytes of a buffer, at least as many as its `byteLength`. Reads files in the mesh's
+    /// folder only.
     [[nodiscard]] std::string_view buffer(const GltfValue& index);
 
     /// The size of all bytes that were read.

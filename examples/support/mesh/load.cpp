@@ -24,7 +24,8 @@ std::string lower_extension(const std::filesystem::path& path) {
     return extension;
 }
 
-// The contents decide for formats that start with a known mark; the extension decides for the others.
+// The contents decide for formats that start with a known mark; the extension decides for the
+// others.
 MeshReader reader_of(const std::filesystem::path& path, std::string_view text) {
     const std::string extension = lower_extension(path);
     if (text.starts_with("ply\n") || text.starts_with("ply\r") || extension == ".ply")

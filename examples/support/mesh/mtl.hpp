@@ -16,10 +16,10 @@ struct MtlMaterial {
 
 using MtlLibrary = std::map<std::string, MtlMaterial, std::less<>>;
 
-/// Adds the materials of an MTL file by their names; a repeated name keeps its first material. `Kd` is
-/// linear RGB. `d` or 1 - `Tr` is the opacity; `d` wins where a material has both. Returns whether the
-/// file ends within a line, so that it may be truncated. Throws InputError where the file cannot be read
-/// or has a malformed statement.
+/// Adds the materials of an MTL file by their names; a repeated name keeps its first material. `Kd`
+/// is linear RGB. `d` or 1 - `Tr` is the opacity; `d` wins where a material has both. Returns
+/// whether the file ends within a line, so that it may be truncated. Throws InputError where the
+/// file cannot be read or has a malformed statement.
 bool read_mtl(const std::filesystem::path& path, MtlLibrary& library);
 
 }  // namespace support

@@ -304,8 +304,8 @@ private:
         return entry->second;
     }
 
-    // Vertex colours are not in the specification of the format. Programs take them from images, so they
-    // are sRGB, from 0 to 1 or from 0 to 255.
+    // Vertex colours are not in the specification of the format. Programs take them from images, so
+    // they are sRGB, from 0 to 1 or from 0 to 255.
     [[nodiscard]] std::vector<glm::vec4> linear_colours() {
         std::vector<glm::vec4> colours = std::move(colours_);
         const auto fraction = [](float value, float greatest) {

@@ -10,8 +10,8 @@
 namespace support {
 namespace {
 
-// Reads Geomview's object file format, in text. Each vertex and each face is on a line of its own; in
-// files without colours, only blanks need separate the numbers.
+// Reads Geomview's object file format, in text. Each vertex and each face is on a line of its own;
+// in files without colours, only blanks need separate the numbers.
 class OffReader {
 public:
     OffReader(const std::filesystem::path& path, const std::string& text)

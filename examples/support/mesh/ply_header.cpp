@@ -122,8 +122,8 @@ private:
         if (element.properties.size() > most) fail("has property 1001, the limit is 1000");
     }
 
-    // Binary data may start with a byte that looks like a line end. So the last line ends with the same
-    // characters as the first.
+    // Binary data may start with a byte that looks like a line end. So the last line ends with the
+    // same characters as the first.
     void finish() {
         if (!has_format_) fail("ends a header without 'format'");
         std::size_t at = lines_.offset();

@@ -15,8 +15,8 @@
 
 namespace support {
 
-/// The values of a text PLY file. The usual layout has one element on each line; in others, any blanks
-/// separate the values.
+/// The values of a text PLY file. The usual layout has one element on each line; in others, any
+/// blanks separate the values.
 class PlyText {
 public:
     PlyText(const std::filesystem::path& path, const std::string& text, const PlyHeader& header)

@@ -10,7 +10,8 @@
 
 namespace support {
 
-/// A k-d tree of points in a plane (Bentley 1975) that finds points in a triangle. Points can be removed.
+/// A k-d tree of points in a plane (Bentley 1975) that finds points in a triangle. Points can be
+/// removed.
 class PointTree {
 public:
     using Triangle = std::array<glm::dvec2, 3>;
@@ -20,8 +21,9 @@ public:
     void remove(std::uint32_t index);
 
     /// The index with the greatest `depth(index)` of at least 0 among the points in or near a
-    /// counter-clockwise triangle; `none` where there is none. `depth` of a point in the triangle must
-    /// return twice the area that the point spans with the edge from the third corner to the first, or
+    /// counter-clockwise triangle; `none` where there is none. `depth` of a point in the triangle
+    /// must return twice the area that the point spans with the edge from the third corner to the
+    /// first, or
     /// -1 to skip the point. Adds its work to `steps`.
     template <class Depth>
     [[nodiscard]] std::uint32_t deepest(const Triangle& triangle, std::uint64_t& steps,

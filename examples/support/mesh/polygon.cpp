@@ -11,8 +11,8 @@
 namespace support {
 namespace {
 
-// Twice the signed area. Differences and products of floats of similar magnitude are exact in double, so
-// the sign is right.
+// Twice the signed area. Differences and products of floats of similar magnitude are exact in
+// double, so the sign is right.
 double turn(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     return (b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x);
 }
@@ -182,7 +182,8 @@ void PolygonSplitter::exchange(std::uint32_t a, std::uint32_t b) {
     update(b);
 }
 
-// Cuts along the diagonal, or where the boundary touches itself at the tip or on an edge of the ear.
+// Cuts along the diagonal, or where the boundary touches itself at the tip or on an edge of the
+// ear.
 void PolygonSplitter::cut(std::uint32_t ear, std::uint32_t deepest) {
     const std::uint32_t before = nodes_[ear].previous, after = nodes_[ear].next;
     const glm::dvec2 p = place(deepest), a = place(before), b = place(ear), c = place(after);

@@ -12,11 +12,11 @@
 
 namespace support {
 
-/// Splits polygons into triangles. Clips a convex corner if no other corner lies in its triangle. Else
-/// cuts the polygon in two along the diagonal from that corner to the deepest corner in the triangle
-/// (Meisters 1975). Signed areas decide, in the coordinate plane that is nearest to the polygon's. Only
-/// reflex corners can be the deepest; a tree finds them. Each search gives a triangle or a diagonal, so
-/// the number of searches is linear.
+/// Splits polygons into triangles. Clips a convex corner if no other corner lies in its triangle.
+/// Else cuts the polygon in two along the diagonal from that corner to the deepest corner in the
+/// triangle (Meisters 1975). Signed areas decide, in the coordinate plane that is nearest to the
+/// polygon's. Only reflex corners can be the deepest; a tree finds them. Each search gives a
+/// triangle or a diagonal, so the number of searches is linear.
 class PolygonSplitter {
 public:
     enum class Result {
@@ -27,10 +27,10 @@ public:
     };
     using Triangle = std::array<std::uint32_t, 3>;
 
-    /// Appends triangles whose corners are indices into `corners`, with the polygon's winding. Their
-    /// projected areas add up to the area of the polygon. Leaves out equal neighbours and spikes without
-    /// area. The polygon may touch itself. Appends nothing if the polygon cannot be split. There must be
-    /// at least three corners, all finite.
+    /// Appends triangles whose corners are indices into `corners`, with the polygon's winding.
+    /// Their projected areas add up to the area of the polygon. Leaves out equal neighbours and
+    /// spikes without area. The polygon may touch itself. Appends nothing if the polygon cannot be
+    /// split. There must be at least three corners, all finite.
     Result split(std::span<const glm::vec3> corners, std::vector<Triangle>& triangles);
 
 private:

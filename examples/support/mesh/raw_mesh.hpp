@@ -13,8 +13,8 @@
 
 namespace support {
 
-/// The polygons of a file, as a reader found them. clean_mesh() checks indices and coordinates, so a
-/// reader passes on what the file says: an index that does not exist becomes `no_vertex`, and a
+/// The polygons of a file, as a reader found them. clean_mesh() checks indices and coordinates, so
+/// a reader passes on what the file says: an index that does not exist becomes `no_vertex`, and a
 /// coordinate may be NaN.
 struct RawMesh {
     static constexpr std::uint32_t no_vertex = 0xFFFFFFFF;
@@ -43,9 +43,10 @@ struct RawMesh {
     }
 };
 
-/// A reader of one format. `text` is the whole file; `path` is for messages and for files beside it.
-/// Throws InputError, in one line that names the file and the place, where the file is damaged or
-/// has something that the reader does not support. Never trusts a count before it has seen the data.
+/// A reader of one format. `text` is the whole file; `path` is for messages and for files beside
+/// it. Throws InputError, in one line that names the file and the place, where the file is damaged
+/// or has something that the reader does not support. Never trusts a count before it has seen the
+/// data.
 using MeshReader = RawMesh (*)(const std::filesystem::path& path, const std::string& text);
 
 RawMesh read_ply(const std::filesystem::path& path, const std::string& text);

@@ -7,8 +7,8 @@
 
 namespace support {
 
-/// Reads a number of a text file, in any locale: "1", "+1.5e-3", "nan", "-inf". The whole word must be
-/// the number, and must not be hexadecimal. A magnitude beyond double becomes infinity or zero.
+/// Reads a number of a text file, in any locale: "1", "+1.5e-3", "nan", "-inf". The whole word must
+/// be the number, and must not be hexadecimal. A magnitude beyond double becomes infinity or zero.
 [[nodiscard]] std::optional<double> parse_number(std::string_view word);
 
 /// Reads an integer with an optional sign, of up to 64 bits.

@@ -9,9 +9,9 @@
 
 namespace support {
 
-/// Walks through the lines of an OBJ or MTL file. LF, CR and CRLF end a line. A backslash at its end
-/// continues the line on the next one, except in a comment, where it may end a Windows path. Skips a byte
-/// order mark.
+/// Walks through the lines of an OBJ or MTL file. LF, CR and CRLF end a line. A backslash at its
+/// end continues the line on the next one, except in a comment, where it may end a Windows path.
+/// Skips a byte order mark.
 class TextLines {
 public:
     explicit TextLines(std::string_view text);

@@ -1,17 +1,17 @@
-// Puts large triangles and the pieces of clipped ones into a queue, and the blocks of pixels that they touch
-// into another.
+// Puts large triangles and the pieces of clipped ones into a queue, and the blocks of pixels that
+// they touch into another.
 //
 //   counts           entries so far, from 0; those that a queue has no room for are counted as well
 //   ..._capacity     of the queues
 
-// Work-items that look for the blocks of a triangle together: on CPUs, where a block has one, each is
-// faster alone.
+// Work-items that look for the blocks of a triangle together: on CPUs, where a block has one, each
+// is faster alone.
 #define RASTER_BIN_TEAM (RASTER_LANES == 1 ? 1u : 8u)
 
 // Nothing more is counted beyond this, so that the counters cannot wrap.
 #define RASTER_COUNT_MAX 0x80000000u
 
-#define RASTER_QUEUES                                                                              \
+#define RASTER_BIN_QUEUES                                                                          \
     volatile global RasterCounts *counts, global RasterTriangle *triangles,                        \
         const uint triangles_capacity, global RasterBlock *blocks, const uint blocks_capacity
 
@@ -34,8 +34,8 @@ static inline RasterBox raster_box(const RasterTriangle* t) {
     return box;
 }
 
-// The next block of a box for a work-item of a team, row by row: at first `lane` blocks behind the upper
-// left one, then a team's further.
+// The next block of a box for a work-item of a team, row by row: at first `lane` blocks behind the
+// upper left one, then a team's further.
 static inline void raster_step(const RasterBox* box, uint blocks, int* x, int* y) {
     for (*x += blocks; *x >= box->across; *x -= box->across) ++*y;
 }
@@ -68,9 +68,9 @@ static inline bool raster_ready(const View* view, RasterTriangle* t) {
     return true;
 }
 
-// A group a batch: a work-item a triangle, and then all work-items, of which there may be more, share
-// the triangles' blocks.
-kernel void raster_bin(RASTER_QUEUES, RASTER_SCENE) {
+// A group a batch: a work-item a triangle, and then all work-items, of which there may be more,
+// share the triangles' blocks.
+kernel void raster_bin(RASTER_BIN_QUEUES, RASTER_SCENE) {
     local uint listed[RASTER_BATCH * RASTER_PIECES_MAX];  // of the queue
     local RasterTriangle near[RASTER_BATCH];              // the first of these
     local uint listed_count, unclipped, block_count, first;

@@ -1,8 +1,8 @@
 // What host and device agree on. Compiled by C++ and by OpenCL C.
 //
-// Screen coordinates count sub-pixels of 1/256 pixel, x to the right and y down, from the upper left corner of
-// the image. Clip coordinates (x, y, w) are relative to the centre of the image: x / w and y / w are
-// sub-pixels, w is the depth along the viewing direction.
+// Screen coordinates count sub-pixels of 1/256 pixel, x to the right and y down, from the upper
+// left corner of the image. Clip coordinates (x, y, w) are relative to the centre of the image: x /
+// w and y / w are sub-pixels, w is the depth along the viewing direction.
 #ifndef RASTER_DEFINITIONS_H
 #define RASTER_DEFINITIONS_H
 
@@ -14,8 +14,8 @@
 // largest image. Differences of snapped coordinates then take 25 bits, edge functions 51.
 #define RASTER_GUARD 4194304.0f
 
-// Where the samples of a pixel lie: offsets from its centre in 1/16 pixel. The patterns of 2, 4 and 8
-// samples are the standard ones of Direct3D 11; a single sample is the centre.
+// Where the samples of a pixel lie: offsets from its centre in 1/16 pixel. The patterns of 2, 4 and
+// 8 samples are the standard ones of Direct3D 11; a single sample is the centre.
 #define RASTER_OFFSETS_1                                                                           \
     { 0, 0 }
 #define RASTER_OFFSETS_2                                                                           \

@@ -16,9 +16,9 @@ namespace {
 constexpr std::size_t batch_size = 64;         // RASTER_BATCH in triangle.clh
 constexpr std::size_t first_capacity = 16384;  // of the queues
 
-// What suits a device. On GPUs a work-item scans no more than tiny triangles alone, and the blocks of others
-// are shared by a work-item for each pixel; on CPUs a work-item is a loop of a thread, and what it
-// saves is the setup of triangles.
+// What suits a device. On GPUs a work-item scans no more than tiny triangles alone, and the blocks
+// of others are shared by a work-item for each pixel; on CPUs a work-item is a loop of a thread,
+// and what it saves is the setup of triangles.
 struct Tuning {
     int small_pixels;
     int block_pixels;
@@ -98,7 +98,7 @@ cellist::Source setup_source(const cellist::Device& device, const Sampling& samp
             .options = build_options(device)};
 }
 
-// A row of a view, in front of which the mesh is placed. Rounded once.
+// A row of a view times the place of the mesh. Rounded once.
 void set_row(cl_float (&out)[4], const cl_float (&row)[4], const glm::dmat4& to_world) {
     const glm::dvec4 in(row[0], row[1], row[2], row[3]);
     const glm::dvec4 product = in * to_world;
@@ -113,9 +113,9 @@ void append_batches(std::vector<RasterBatch>& batches, std::size_t instance, cl_
                            first + begin + std::min(size, count - begin)});
 }
 
-// Threads of a processor take many groups at a time, one behind the other: under PoCL 3.1 each its share of
-// those that are left, up to a bound. So that a dense part of a mesh does not fall to one of them, sixteenths
-// of the batches follow one another in the order of their reversed bits.
+// Under PoCL, a thread takes many consecutive groups at a time. Sixteenths of the batches are
+// therefore interleaved, in the order of their reversed bits: no thread gets all of a dense part of
+// a mesh.
 std::vector<RasterBatch> in_order_for(const cellist::Device& device,
                                       std::vector<RasterBatch> batches) {
     if (device.info().type == CL_DEVICE_TYPE_GPU) return batches;
@@ -198,22 +198,18 @@ std::string build_options(const cellist::Device& device) {
 }
 
 SetupKernels::SetupKernels(const cellist::Device& device, const Sampling& sampling)
-    : transform(device, setup_source(device, sampling), "raster_transform", cellist::type<View>,
-                cellist::type<RasterInstance>, cellist::type<RasterBatch>,
-                cellist::type<RasterVertex>, cellist::type<RasterTriangle>,
-                cellist::type<RasterBlock>, cellist::type<RasterCounts>),
-      bin(device, setup_source(device, sampling), "raster_bin", cellist::type<View>,
-          cellist::type<RasterInstance>, cellist::type<RasterBatch>, cellist::type<RasterVertex>,
-          cellist::type<RasterTriangle>, cellist::type<RasterBlock>, cellist::type<RasterCounts>) {}
+    : transform(make_kernel(device, setup_source(device, sampling), "raster_transform")),
+      bin(make_kernel(device, setup_source(device, sampling), "raster_bin")) {}
 
 cellist::Source Pass::pass_source(const cellist::Device& device, const Sampling& sampling,
                                   std::string_view source, const std::string& name,
-                                  const std::string& integer) {
-    return {.text = joined({"#pragma OPENCL FP_CONTRACT OFF", defines(device, sampling),
-                            integer == "long" ? "#define RASTER_WIDE" : "", kernels::definitions_h,
-                            kernels::triangle_clh, source, kernels::draw_clh}),
-            .file_name = name,
-            .options = build_options(device)};
+                                  EdgeBits edge_bits) {
+    return {
+        .text = joined({"#pragma OPENCL FP_CONTRACT OFF", defines(device, sampling),
+                        edge_bits == EdgeBits::wide ? "#define RASTER_WIDE" : "",
+                        kernels::definitions_h, kernels::triangle_clh, source, kernels::draw_clh}),
+        .file_name = name,
+        .options = build_options(device)};
 }
 
 // ---- Projection ------------------------------------------------------------------------------
@@ -245,8 +241,6 @@ Projection::Projection(const cellist::Device& device, SetupKernels& kernels,
     : kernels_(kernels),
       geometry_(geometry),
       eyes_(views.size()),
-      width_(views.front().width),
-      height_(views.front().height),
       views_(device, views),
       instances_(device, views.size() * placed.size()),
       batches_(device, vertex_batches(geometry, placed, views.size())),
@@ -262,7 +256,7 @@ void Projection::move(std::span<const Placed> placed, std::span<const View> view
         for (const Placed& one : placed) {
             const Geometry::Part& part = geometry_.part(one.mesh);
             instances.push_back(instance_of(one, views[eye], eye));
-            instances.back().projected = next - part.first_vertex;
+            instances.back().vertex_offset = next - part.first_vertex;
             next += part.vertices;
         }
     instances_.upload_async(instances).wait();
@@ -310,18 +304,18 @@ void Triangles::bin() {
                        blocks_, capacity_of(blocks_), p.views_, p.instances_, p.vertices_,
                        p.geometry_.positions(), p.geometry_.indices(), batches_);
     counted_ = counts_.download_async();
-    complete_.reset();
+    all_fitted_.reset();
 }
 
-bool Triangles::complete() {
-    if (complete_) return *complete_;
+bool Triangles::finish_or_grow() {
+    if (all_fitted_) return *all_fitted_;
     const RasterCounts counts = counted_.get().front();
-    complete_ = counts.triangles <= queue_.size() && counts.blocks <= blocks_.size();
+    all_fitted_ = counts.triangles <= queue_.size() && counts.blocks <= blocks_.size();
     if (counts.triangles > queue_.size())
         queue_ = cellist::Buffer<RasterTriangle>(device_, counts.triangles);
     if (counts.blocks > blocks_.size())
         blocks_ = cellist::Buffer<RasterBlock>(device_, counts.blocks);
-    return *complete_;
+    return *all_fitted_;
 }
 
 cellist::Range Triangles::triangles() const { return batches_range(batches_.size()); }

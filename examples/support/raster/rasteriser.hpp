@@ -16,7 +16,7 @@
 
 namespace raster {
 
-/// Meshes on the device, one behind the other.
+/// Meshes on the device, one after the other.
 class Geometry {
 public:
     /// Throws InputError where the meshes have more than 2^32 / 3 triangles or vertices.
@@ -49,8 +49,7 @@ struct Placed {
     cl_uint tag = 0;  ///< for the user's kernels
 };
 
-/// How a view sees a mesh, to the last bit as the device does. The projected vertices' place is left
-/// at 0.
+/// How a view sees a mesh, to the last bit as the device does. vertex_offset is left at 0.
 [[nodiscard]] RasterInstance instance_of(const Placed& placed, const View& view, cl_uint eye);
 
 /// The build options of every kernel of the rasteriser: correctly rounded division where the device
@@ -58,11 +57,22 @@ struct Placed {
 [[nodiscard]] std::string build_options(const cellist::Device& device);
 [[nodiscard]] bool divides_exactly(const cellist::Device& device);
 
-/// What passes and the tiles are compiled for.
+/// What the kernels are compiled for.
 struct Sampling {
     int samples = 1;           ///< of a pixel: 1, 2, 4 or 8
     bool depth_range = false;  ///< fragments have slopes of their depth
 };
+
+/// A kernel of the rasteriser. `uses` names the types of the pass, as in cellist::Kernel.
+template <class... Uses>
+[[nodiscard]] cellist::Kernel make_kernel(const cellist::Device& device,
+                                          const cellist::Source& source, const std::string& name,
+                                          const Uses&... uses) {
+    return cellist::Kernel(device, source, name, cellist::type<View>, cellist::type<RasterInstance>,
+                           cellist::type<RasterBatch>, cellist::type<RasterVertex>,
+                           cellist::type<RasterTriangle>, cellist::type<RasterBlock>,
+                           cellist::type<RasterCounts>, uses...);
+}
 
 /// The kernels that every drawing needs, built once for a device.
 struct SetupKernels {
@@ -79,20 +89,18 @@ public:
     template <class... Uses>
     Pass(const cellist::Device& device, const Sampling& sampling, std::string_view source,
          const std::string& name, const Uses&... uses)
-        : small_(device, pass_source(device, sampling, source, name, "int"), "raster_draw_small",
-                 cellist::type<View>, cellist::type<RasterInstance>, cellist::type<RasterBatch>,
-                 cellist::type<RasterVertex>, cellist::type<RasterTriangle>,
-                 cellist::type<RasterBlock>, cellist::type<RasterCounts>, uses...),
-          blocks_(device, pass_source(device, sampling, source, name, "long"), "raster_draw_blocks",
-                  cellist::type<View>, cellist::type<RasterInstance>, cellist::type<RasterBatch>,
-                  cellist::type<RasterVertex>, cellist::type<RasterTriangle>,
-                  cellist::type<RasterBlock>, cellist::type<RasterCounts>, uses...) {}
+        : small_(make_kernel(device, pass_source(device, sampling, source, name, EdgeBits::narrow),
+                             "raster_draw_small", uses...)),
+          blocks_(make_kernel(device, pass_source(device, sampling, source, name, EdgeBits::wide),
+                              "raster_draw_blocks", uses...)) {}
 
 private:
     friend class Triangles;
+    // Edge functions of small triangles fit in 32 bits, those of large ones need 64.
+    enum class EdgeBits { narrow, wide };
     static cellist::Source pass_source(const cellist::Device& device, const Sampling& sampling,
                                        std::string_view source, const std::string& name,
-                                       const std::string& integer);
+                                       EdgeBits edge_bits);
     cellist::Kernel small_;
     cellist::Kernel blocks_;
 };
@@ -121,8 +129,6 @@ private:
     SetupKernels& kernels_;
     const Geometry& geometry_;
     std::size_t eyes_;
-    cl_int width_;
-    cl_int height_;
     std::vector<std::size_t> meshes_;  ///< of the instances, in each eye
     cellist::Buffer<View> views_;
     cellist::Buffer<RasterInstance> instances_;
@@ -130,8 +136,8 @@ private:
     cellist::Buffer<RasterVertex> vertices_;
 };
 
-/// The triangles of some of the instances: divides the large ones into blocks of pixels, and draws all
-/// any number of times.
+/// The triangles of some of the instances: divides the large ones into blocks of pixels, and draws
+/// all any number of times.
 class Triangles {
 public:
     /// `chosen` are indices of the projection's instances. Refers to the projection, which must
@@ -142,9 +148,9 @@ public:
     /// Puts the large triangles and their blocks into queues. Does not block.
     void bin();
 
-    /// Whether the queues had room for all. If not, they have more now, and whoever has drawn since
-    /// bin() begins again there. Blocks.
-    [[nodiscard]] bool complete();
+    /// Waits for bin(). False if the queues had no room for all: they have grown then, and whoever
+    /// has drawn since bin() begins again there.
+    [[nodiscard]] bool finish_or_grow();
 
     /// Draws with a pass whose RASTER_TARGET takes `targets`. Does not block.
     template <class... Targets>
@@ -177,7 +183,7 @@ private:
     cellist::Buffer<RasterBlock> blocks_;
     cellist::Buffer<RasterCounts> counts_;
     cellist::Pending<std::vector<RasterCounts>> counted_;
-    std::optional<bool> complete_;  ///< since bin(), once it is known
+    std::optional<bool> all_fitted_;  ///< into the queues at the last bin(), once it is known
 };
 
 }  // namespace raster

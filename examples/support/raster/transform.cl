@@ -1,8 +1,8 @@
 // Projection, and snapping to sub-pixels.
 //
-// Where vertices snap to is part of the definition of a picture, which the reference of cellist-oit follows
-// with code of its own. So each operation is rounded to float: every product that is added to something is
-// an explicit fma, in a fixed order, and nothing else is contracted.
+// Where vertices snap to is part of the definition of a picture, which the reference of cellist-oit
+// follows with code of its own. So each operation is rounded to float: every product that is added
+// to something is an explicit fma, in a fixed order, and nothing else is contracted.
 #pragma OPENCL FP_CONTRACT OFF
 
 #define RASTER_PLANES 5
@@ -33,8 +33,8 @@ static inline int raster_snap(float coordinate, float w, int side) {
     return (int)rint(coordinate / w) + side * (RASTER_SUBPIXELS / 2);
 }
 
-// Projects the vertices of all instances, a work-group for each batch of them. positions: 3 floats a
-// vertex.
+// Projects the vertices of all instances, a work-group for each batch of them. positions: 3 floats
+// a vertex.
 kernel void raster_transform(global const View* views, global const RasterInstance* instances,
                              global const RasterBatch* batches, global const float* positions,
                              global RasterVertex* vertices) {
@@ -51,5 +51,5 @@ kernel void raster_transform(global const View* views, global const RasterInstan
     vertex.outside = raster_outside(&view, x, y, vertex.w);
     vertex.x = vertex.outside == 0 ? raster_snap(x, vertex.w, view.width) : 0;
     vertex.y = vertex.outside == 0 ? raster_snap(y, vertex.w, view.height) : 0;
-    vertices[i + instance.projected] = vertex;
+    vertices[i + instance.vertex_offset] = vertex;
 }

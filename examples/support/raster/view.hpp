@@ -4,6 +4,8 @@
 
 #include <cellist/cellist.hpp>
 
+#include "raster/definitions.h"
+
 namespace raster {
 
 /// A pinhole camera and an image, as the kernels take them.
@@ -35,13 +37,13 @@ struct RasterInstance {
     cl_float normal_x[3];
     cl_float normal_y[3];
     cl_float normal_z[3];
-    /// What to add, modulo 2^32, to the index of a vertex for that of its projection.
-    cl_uint projected;
+    /// The index of a projected vertex is that of the mesh's vertex plus this, modulo 2^32.
+    cl_uint vertex_offset;
     cl_uint eye;  ///< index of the view
     cl_uint tag;  ///< of the user
 };
-CELLIST_STRUCT(RasterInstance, row_x, row_y, row_w, normal_x, normal_y, normal_z, projected, eye,
-               tag);
+CELLIST_STRUCT(RasterInstance, row_x, row_y, row_w, normal_x, normal_y, normal_z, vertex_offset,
+               eye, tag);
 
 /// Consecutive vertices or triangles of an instance that a work-group takes.
 struct RasterBatch {
@@ -61,13 +63,13 @@ struct RasterVertex {
 };
 CELLIST_STRUCT(RasterVertex, x, y, w, outside);
 
-/// A triangle on the screen, or a piece of a clipped one, ready to be scanned: oriented so that its edge
-/// functions are positive inside.
+/// A triangle on the screen, or a piece of a clipped one, ready to be scanned: oriented so that its
+/// edge functions are positive inside.
 struct RasterTriangle {
-    cl_int x[3], y[3];  ///< corners in sub-pixels
-    cl_float inverse_w[3];
-    cl_uint corner[3];  ///< vertices of the triangle in the meshes
-    cl_float share[9];  ///< parts of these in each corner, three a corner; used where clipped
+    cl_int x[3], y[3];      ///< corners in sub-pixels
+    cl_float inverse_w[3];  ///< 1 / w of the corners; w until raster_invert()
+    cl_uint corner[3];      ///< vertices of the triangle in the meshes
+    cl_float share[9];      ///< parts of these in each corner, three a corner; used where clipped
     cl_uint instance;
     cl_uint number;  ///< of the piece among those of all triangles that are drawn
     cl_int front;    ///< 1 where the corners run counter-clockwise on the screen
@@ -90,8 +92,6 @@ struct RasterCounts {
     cl_uint blocks;
 };
 CELLIST_STRUCT(RasterCounts, triangles, blocks);
-
-#include "raster/definitions.h"
 
 /// Where a sample of a pixel lies: 1/16 pixel from its centre.
 struct SampleOffset {

@@ -40,7 +40,8 @@ struct OddFile {
     std::string bytes;
 };
 
-/// Loads the file. Empty if it gives the plain mesh without drops, else a text that says how it differs.
+/// Loads the file. Empty if it gives the plain mesh without drops, else a text that says how it
+/// differs.
 inline std::string problem_of_whole(const Folder& folder, const OddFile& file,
                                     const PlainMesh& plain) {
     try {
@@ -58,8 +59,8 @@ inline void require_one_line(const std::string& message, const std::string& name
     REQUIRE(message.find(name) != std::string::npos);
 }
 
-/// Cuts the file after `size` bytes. It must be refused in one line, give the plain mesh, or report that
-/// it may be cut or that faces were dropped.
+/// Cuts the file after `size` bytes. It must be refused in one line, give the plain mesh, or report
+/// that it may be cut or that faces were dropped.
 inline std::string problem_of_cut(const Folder& folder, const OddFile& file, std::size_t size,
                                   const PlainMesh& plain) {
     const std::string name = "cut-" + file.name;

@@ -15,8 +15,8 @@
 
 namespace cellist::test {
 
-/// The mesh that a file describes: the oracle of the tests. Coordinates are multiples of 1/64, so that few
-/// decimals and every floating-point type hold them exactly.
+/// The mesh that a file describes: the oracle of the tests. Coordinates are multiples of 1/64, so
+/// that few decimals and every floating-point type hold them exactly.
 struct PlainMesh {
     std::vector<glm::dvec3> positions;
     std::vector<std::vector<std::uint32_t>> faces;
@@ -108,8 +108,8 @@ inline glm::dvec3 area_vector(const std::vector<glm::dvec3>& corners) {
     return 0.5 * sum;
 }
 
-/// Whether a point of a polygon's plane lies in it: crossings of a ray, in the coordinate plane that
-/// keeps most of its area.
+/// Whether a point of a polygon's plane lies in it: crossings of a ray, in the coordinate plane
+/// that keeps most of its area.
 inline bool lies_in(const glm::dvec3& point, const std::vector<glm::dvec3>& corners) {
     const glm::dvec3 normal = area_vector(corners);
     if (std::abs(glm::dot(normal, point - corners[0])) > 1e-9 * glm::dot(normal, normal))
@@ -127,8 +127,8 @@ inline bool lies_in(const glm::dvec3& point, const std::vector<glm::dvec3>& corn
     return inside;
 }
 
-/// Says how a loaded mesh differs from the plain one; empty if it does not. Compares triangles with their
-/// winding. Each polygon must be covered by triangles that lie within it and have its area.
+/// Says how a loaded mesh differs from the plain one; empty if it does not. Compares triangles with
+/// their winding. Each polygon must be covered by triangles that lie within it and have its area.
 inline std::string difference(const support::Mesh& loaded, const PlainMesh& plain) {
     if (plain.has_triangles_only()) {
         std::vector<PlacedTriangle> expected;

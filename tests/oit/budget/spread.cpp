@@ -1,4 +1,5 @@
-// Times choose a setting only as far as they tell settings apart; the plainest of the others is chosen.
+// Times choose a setting only as far as they tell settings apart; the plainest of the others is
+// chosen.
 #include "budget/spread.hpp"
 
 #include <string>

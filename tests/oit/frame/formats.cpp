@@ -6,6 +6,7 @@
 
 #include "camera.hpp"
 #include "methods/renderer.hpp"
+#include "oit/support/node_errors.hpp"
 #include "oit/support/procedural.hpp"
 #include "reference/comparison.hpp"
 #include "support/catch.hpp"
@@ -33,8 +34,8 @@ std::size_t require_within_bound(const oit::Scene& scene, const oit::Quality& qu
     const auto lengths = renderer.method().lengths();
     REQUIRE(lengths->total == reference.fragments.size());
     // An error of an opacity counts once for each layer, up to the brightest colour.
-    const double bound = renderer.layout().colour_error(renderer.features()) +
-                         static_cast<double>(lengths->longest) * renderer.layout().alpha_error() *
+    const double bound = colour_error(renderer.layout(), renderer.features()) +
+                         static_cast<double>(lengths->longest) * alpha_error(renderer.layout()) *
                              static_cast<double>(renderer.features().colour_max) +
                          1e-5;
     std::size_t certain = 0, wrong = 0;

@@ -27,8 +27,8 @@ support::Mesh sheet() {
     return mesh;
 }
 
-// An opaque knot between sheets, one in front of it and two behind: no transparent surface ends within
-// the picture, or where it meets an opaque one.
+// An opaque knot between sheets, one in front of it and two behind: no transparent surface ends
+// within the picture, or where it meets an opaque one.
 oit::Scene knot_between_sheets(oit::Blend blend) {
     oit::Scene scene;
     scene.models = {{.mesh = torus_knot(2, 3, 200, 12)}, {.mesh = sheet()}};

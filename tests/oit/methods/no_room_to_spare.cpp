@@ -17,8 +17,8 @@ std::vector<cl_float4> draw(oit::FragmentSource& source, oit::Method& method) {
         source.prepare();
         method.store();
         method.resolve();
-        complete = source.complete();
-        complete = method.complete() && complete;
+        complete = source.finish_or_grow();
+        complete = method.finish_or_grow() && complete;
     }
     source.finish();
     return source.image().download();

@@ -1,5 +1,5 @@
-// Pixels of 2, 4 and 8 samples: which are covered, how they are blended, and what depths in each sample
-// are good for.
+// Pixels of 2, 4 and 8 samples: which are covered, how they are blended, and what depths in each
+// sample are good for.
 #include <algorithm>
 #include <cmath>
 
@@ -182,8 +182,8 @@ Errors errors_of(const oit::Scene& scene, const oit::Quality& quality, const oit
 
 TEST_CASE("samples, and depths in each of them, bring the image nearer to one of many pixels") {
     std::vector<oit::Scene> scenes(4);
-    // Two that stick in each other steeply, four that cross in one line, sheets that lie close behind
-    // one another at a grazing angle and do not cross, and three in one corner.
+    // Two that stick in each other steeply, four that cross in one line, sheets that lie close
+    // behind one another at a grazing angle and do not cross, and three in one corner.
     for (const double angle : {1.35, -1.35}) add_square(scenes[0], turned(angle));
     for (const double angle : {0.7, 0.58, 0.46, 0.35}) add_square(scenes[1], turned(angle));
     for (const double behind : {0.0, 0.02, 0.04, 0.06})

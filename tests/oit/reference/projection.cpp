@@ -1,5 +1,5 @@
-// The reference projects and clips with code of its own: it agrees with real numbers, and the rasteriser
-// agrees with it where the near plane and the guard band cut triangles.
+// The reference projects and clips with code of its own: it agrees with real numbers, and the
+// rasteriser agrees with it where the near plane and the guard band cut triangles.
 #include "reference/projection.hpp"
 
 #include <algorithm>

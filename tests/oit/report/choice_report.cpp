@@ -104,9 +104,9 @@ TEST_CASE("a setting that is as fast is not called slower, and one that drew bef
     CHECK(contains(slower, "slower"));
     const nlohmann::ordered_json json =
         oit::json_of(choice, budget_of("1/255"), kept_for(choice, budget_of("1/255")));
-    CHECK(json["candidates"][1]["fate"] == "as fast");
+    CHECK(json["candidates"][1]["outcome"] == "as fast");
     CHECK(json["candidates"][1]["lower_quartile_ms"] == 1.9);
-    CHECK(json["candidates"][2]["fate"] == "slower");
+    CHECK(json["candidates"][2]["outcome"] == "slower");
 }
 
 TEST_CASE("settings that are not shown are counted") {

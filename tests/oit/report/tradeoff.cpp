@@ -91,7 +91,7 @@ TEST_CASE("times whose spreads overlap are not distinct") {
     print(noisy, out);
     CHECK(contains(out.str(), "counted  not significant"));
     const json metrics = json::parse(oit::dump(to_json(noisy), 2));
-    CHECK(metrics["exact_methods"][1]["told_apart"] == false);
+    CHECK(metrics["exact_methods"][1]["distinct"] == false);
     CHECK(oit::exact_methods(sweep())[1].is_distinct);
 }
 

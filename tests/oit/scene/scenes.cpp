@@ -41,8 +41,8 @@ std::uint64_t require_accurate(const oit::Scene& scene, int width, int height,
     return renderer.method().lengths()->longest;
 }
 
-// Every scene that is drawn lies in the unit sphere, with normals on the side from which corners run
-// counter-clockwise.
+// Every scene that is drawn lies in the unit sphere, with normals on the side from which corners
+// run counter-clockwise.
 void require_sound(const oit::Scene& scene) {
     for (const oit::Instance& instance : scene.instances) {
         const support::Mesh& mesh = scene.models[instance.model].mesh;

@@ -64,8 +64,8 @@ inline Light weighted(Layers layers, const DepthBounds& bounds) {
     return weighted_mean(layers, logarithms);
 }
 
-/// Enderton et al. 2010 with more trials than can be drawn: a layer is seen where no nearer one hides
-/// it. Layers of one depth do not hide each other.
+/// Enderton et al. 2010 with more trials than can be drawn: a layer is seen where no nearer one
+/// hides it. Layers of one depth do not hide each other.
 inline Light stochastic(Layers layers) {
     std::vector<double> logarithms;
     for (const ReferenceFragment& layer : layers) {
@@ -78,8 +78,8 @@ inline Light stochastic(Layers layers) {
 }
 
 /// The part of a distribution with these moments that lies in front of z (Muenstermann et al. 2018,
-/// section 3.2): of the distribution at z and two other depths that has the moments, what is at these
-/// if they are in front of z, and a quarter of what is at z.
+/// section 3.2): of the distribution at z and two other depths that has the moments, what is at
+/// these if they are in front of z, and a quarter of what is at z.
 inline double part_in_front(const std::array<double, 5>& moments, double z) {
     constexpr double bias = 5e-7, overestimation = 0.25;
     const std::array<double, 5> towards{1, 0, 0.375, 0, 0.375};
@@ -121,8 +121,8 @@ inline Light moments(Layers layers, const DepthBounds& bounds) {
     return weighted_mean(layers, logarithms);
 }
 
-/// Salvi et al. 2011: steps behind which a part of the light comes through. Layers of one depth make
-/// one step, and are blended in their order.
+/// Salvi et al. 2011: steps behind which a part of the light comes through. Layers of one depth
+/// make one step, and are blended in their order.
 inline Light adaptive(Layers layers, std::size_t most_steps) {
     std::vector<std::pair<double, double>> steps;  // depth, part
     const auto limit = [&] {

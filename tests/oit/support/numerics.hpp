@@ -14,15 +14,16 @@
 
 #include "camera.hpp"
 #include "methods/renderer.hpp"
+#include "oit/support/node_errors.hpp"
 #include "reference/comparison.hpp"
 #include "reference/reference.hpp"
 #include "scene/scenes.hpp"
 
-// What docs/numerics.md promises, and what is measured of it: a test and the program that writes the
-// tables of the document share this.
+// What docs/numerics.md promises, and what is measured of it: a test and the program that writes
+// the tables of the document share this.
 namespace cellist::test {
 
-// ---- colours -------------------------------------------------------------------------------------
+// ---- colours ------------------------------------------------------------------------------------
 
 /// A scene at a limit of numbers.
 struct Extreme {
@@ -63,12 +64,13 @@ inline double colour_bound(const oit::Renderer& renderer, std::uint64_t layers) 
     const auto n = static_cast<double>(layers);
     const double shading = 512 * unit, blending = (3 * n + 2) * unit;
     return shading + blending +
-           renderer.layout().colour_error(renderer.features()) /
+           colour_error(renderer.layout(), renderer.features()) /
                static_cast<double>(renderer.features().colour_max) +
-           n * renderer.layout().alpha_error();
+           n * alpha_error(renderer.layout());
 }
 
-/// What a pixel changes by, at most, if all layers whose order the format does not know change places.
+/// What a pixel changes by, at most, if all layers whose order the format does not know change
+/// places.
 inline double swaps(const oit::Renderer& renderer, const oit::Reference& reference,
                     std::size_t pixel) {
     const auto& all = reference.fragments;
@@ -129,7 +131,7 @@ inline ColourMetrics measure(const Device& device, const Extreme& extreme, oit::
     return metrics;
 }
 
-// ---- depths --------------------------------------------------------------------------------------
+// ---- depths -------------------------------------------------------------------------------------
 
 struct DepthCase {
     std::string_view name;
@@ -173,8 +175,8 @@ inline raster::View wide_view(int width, int height) {
     return view;
 }
 
-/// Sheets beside one another, each ten times as far away as the one before it and a third farther at
-/// its right side: from depth 1.01e-4 to 1.35e6.
+/// Sheets beside one another, each ten times as far away as the one before it and a third farther
+/// at its right side: from depth 1.01e-4 to 1.35e6.
 inline oit::Scene sheets_of_all_depths() {
     constexpr int count = 11;
     support::Mesh mesh;
@@ -231,7 +233,7 @@ inline DepthMetrics measure(const Device& device, const DepthCase& depth_case) {
     return metrics;
 }
 
-// ---- the tables ----------------------------------------------------------------------------------
+// ---- the tables ---------------------------------------------------------------------------------
 
 inline std::string short_number(double value) {
     if (value == 0) return "0";

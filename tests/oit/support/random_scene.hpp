@@ -10,8 +10,8 @@
 
 namespace cellist::test {
 
-/// A knot, and around it triangles of any size, opacity and colour in any direction, of all of `blends`
-/// in turn; every second scene stands on a floor.
+/// A knot, and around it triangles of any size, opacity and colour in any direction, of all of
+/// `blends` in turn; every second scene stands on a floor.
 inline oit::Scene random_scene(std::uint32_t seed, const std::vector<oit::Blend>& blends,
                                int triangles = 40) {
     std::mt19937 random(seed);

@@ -39,11 +39,11 @@ inline Coverage coverage_of(const support::Mesh& mesh, const raster::View& view,
 #define RASTER_TARGET_PASS counts, depths
 static inline void raster_emit(RASTER_TARGET, const View* view,
                                global const RasterInstance* instance, uint piece,
-                               const RasterFragment* fragment) {
-    const uint pixel = fragment->y * view->width + fragment->x;
+                               const RasterFragment* covered) {
+    const uint pixel = covered->y * view->width + covered->x;
     for (int s = 0; s < RASTER_SAMPLES; ++s)
-        if (fragment->coverage >> s & 1) atomic_inc(&counts[pixel * RASTER_SAMPLES + s]);
-    depths[pixel] = fragment->depth;
+        if (covered->coverage >> s & 1) atomic_inc(&counts[pixel * RASTER_SAMPLES + s]);
+    depths[pixel] = covered->depth;
 }
 )";
     const raster::Sampling sampling{.samples = samples};
@@ -65,7 +65,7 @@ static inline void raster_emit(RASTER_TARGET, const View* view,
         depths.fill(0);
         triangles.bin();
         triangles.draw(pass, counts, depths);
-    } while (!triangles.complete());
+    } while (!triangles.finish_or_grow());
     return {counts.download(), depths.download()};
 }
 

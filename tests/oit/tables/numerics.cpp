@@ -1,5 +1,5 @@
-// Measures what docs/numerics.md says of numbers at their limits, and writes it into the tables there:
-// between "<!-- measured: NAME -->" and "<!-- end of measured -->".
+// Measures what docs/numerics.md says of numbers at their limits, and writes it into the tables
+// there: between "<!-- measured: NAME -->" and "<!-- end of measured -->".
 #include "oit/support/numerics.hpp"
 
 #include <fstream>
