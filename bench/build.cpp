@@ -40,15 +40,16 @@ Result small_build(const Suite& suite) {
 
 void add_build(Suite& suite) {
     add_cases(suite, "build", suite.workloads(), storages(),
-              []<class Record>(const Suite& s, const Workload& workload, const Keeping& keeping) {
-                  Containers<Record> containers(s, workload, keeping);
+              []<class Record>(const Suite& s, const Workload& workload,
+                               const Configuration& configuration) {
+                  Containers<Record> containers(s, workload, configuration);
                   const std::size_t kernel_runs = containers.build(containers.next()).passes;
                   const Samples samples = sample(s.sampling(), [&] {
                       cellist::Lists<Record>& lists = containers.next();
                       return host_seconds(s.device(), [&] { containers.build(lists); });
                   });
                   return Result{samples, double(workload.nodes),
-                                build_bytes(workload, keeping, kernel_runs)};
+                                build_bytes(workload, configuration, kernel_runs)};
               });
     suite.add("small_build", [&suite] { return small_build(suite); });
 }

@@ -10,8 +10,9 @@ void add_clear(Suite& suite) {
         return workload.distribution.id != BENCH_RANDOM || workload.node_bytes != 16;
     });
     add_cases(suite, "clear", workloads, storages(),
-              []<class Record>(const Suite& s, const Workload& workload, const Keeping& keeping) {
-                  Containers<Record> containers(s, workload, keeping);
+              []<class Record>(const Suite& s, const Workload& workload,
+                               const Configuration& configuration) {
+                  Containers<Record> containers(s, workload, configuration);
                   cellist::Lists<Record>& first = containers.next();
                   first.clear();
                   if (first.lengths().total != 0)

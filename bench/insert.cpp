@@ -13,8 +13,8 @@ namespace bench {
 
 void add_insert(Suite& suite) {
     const auto measure = []<class Record>(const Suite& s, const Workload& workload,
-                                          const Keeping& keeping) -> Result {
-        Containers<Record> containers(s, workload, keeping);
+                                          const Configuration& configuration) -> Result {
+        Containers<Record> containers(s, workload, configuration);
         Ceilings ceilings(s, workload);
         std::size_t kernel_runs = 0;
         const std::vector<Samples> samples = sample(s.sampling(), [&]() -> std::vector<double> {
@@ -26,7 +26,7 @@ void add_insert(Suite& suite) {
         });
         return {samples[0],
                 double(workload.nodes),
-                insert_bytes(workload, keeping, kernel_runs),
+                insert_bytes(workload, configuration, kernel_runs),
                 {{"ceiling_ms", 1e3 * samples[1].median},
                  {"of_ceiling", samples[1].median / samples[0].median},
                  {"in_order_ms", 1e3 * samples[2].median},

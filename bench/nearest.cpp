@@ -8,9 +8,10 @@ namespace bench {
 void add_nearest(Suite& suite) {
     add_cases(
         suite, "nearest", random_and_coherent(suite.workloads(BENCH_READABLE_NODES)), storages(),
-        []<class Record>(const Suite& s, const Workload& workload, const Keeping& keeping) {
+        []<class Record>(const Suite& s, const Workload& workload,
+                         const Configuration& configuration) {
             constexpr cl_uint k = 8;
-            Containers<Record> containers(s, workload, keeping);
+            Containers<Record> containers(s, workload, configuration);
             cellist::Source source = source_of<Record>(kernels::nearest_cl, "nearest.cl");
             source.options += " -DBENCH_NEAREST=" + std::to_string(k);
             cellist::Kernel nearest(s.device(), source, "nearest", containers.next());
@@ -20,7 +21,7 @@ void add_nearest(Suite& suite) {
             const Samples samples = sample(s.sampling(), [&] {
                 return device_seconds(nearest.run(workload.cells(), containers.next(), digests));
             });
-            return Result{samples, double(workload.nodes), read_bytes(workload, keeping)};
+            return Result{samples, double(workload.nodes), read_bytes(workload, configuration)};
         });
 }
 

@@ -37,8 +37,9 @@ void add_sort(Suite& suite) {
         workloads.back().occupancy = length;
     }
     add_cases(suite, "sort", workloads, storages(),
-              []<class Record>(const Suite& s, const Workload& workload, const Keeping& keeping) {
-                  Containers<Record> containers(s, workload, keeping);
+              []<class Record>(const Suite& s, const Workload& workload,
+                               const Configuration& configuration) {
+                  Containers<Record> containers(s, workload, configuration);
                   cellist::Lists<Record>& first = containers.next();
                   first.sort(&Record::key);
                   check_sorted(s, workload, first);

@@ -11,11 +11,11 @@ namespace {
 template <class Record>
 class BuildRead {
 public:
-    BuildRead(const Suite& suite, const Workload& workload, const Keeping& keeping,
-              Input input = Input::generated, std::size_t by_turns = 1)
+    BuildRead(const Suite& suite, const Workload& workload, const Configuration& configuration,
+              Input input = Input::generated, std::size_t interleaved = 1)
         : device_(suite.device()),
           workload_(workload),
-          containers_(suite, workload, keeping, input, by_turns),
+          containers_(suite, workload, configuration, input, interleaved),
           digests_(device_, workload.cells()),
           read_(device_, source_of<Record>(kernels::read_cl, "read.cl"), "read",
                 containers_.next()) {}
@@ -43,9 +43,9 @@ private:
 };
 
 template <class Record>
-Result build_read(const Suite& suite, const Workload& workload, const Keeping& keeping,
+Result build_read(const Suite& suite, const Workload& workload, const Configuration& configuration,
                   Input input) {
-    BuildRead<Record> work(suite, workload, keeping, input);
+    BuildRead<Record> work(suite, workload, configuration, input);
     const std::vector<Samples> samples = sample(suite.sampling(), [&]() -> std::vector<double> {
         const auto [build, read] = work.run();
         return {build + read, build, read};
@@ -58,12 +58,12 @@ Result build_read(const Suite& suite, const Workload& workload, const Keeping& k
 
 /// Calls `use` with each automatic storage and each storage that it may choose, by position.
 template <class Use>
-void for_each_choice(const std::vector<Keeping>& keepings, const Use& use) {
+void for_each_choice(const std::vector<Configuration>& configurations, const Use& use) {
     const auto is_chosen = [&](std::size_t i) {
-        return keepings[i].options.storage == cellist::Storage::automatic;
+        return configurations[i].options.storage == cellist::Storage::automatic;
     };
-    for (std::size_t i = 0; i < keepings.size(); ++i)
-        for (std::size_t j = 0; j < keepings.size(); ++j)
+    for (std::size_t i = 0; i < configurations.size(); ++i)
+        for (std::size_t j = 0; j < configurations.size(); ++j)
             if (is_chosen(i) && !is_chosen(j)) use(i, j);
 }
 
@@ -72,14 +72,15 @@ void for_each_choice(const std::vector<Keeping>& keepings, const Use& use) {
 /// medians of ratios within a round. A machine that is slow for some rounds changes them less than
 /// the ratio of two medians.
 Result compare_storages(const Suite& suite, const Workload& workload) {
-    std::vector<Keeping> keepings = storages();
-    keepings.insert(keepings.end(), automatic_storages().begin(), automatic_storages().end());
-    std::erase_if(keepings, [&](const Keeping& keeping) {
-        return !fits(suite.device().info(), workload, keeping);
+    std::vector<Configuration> configurations = storages();
+    configurations.insert(configurations.end(), automatic_storages().begin(),
+                          automatic_storages().end());
+    std::erase_if(configurations, [&](const Configuration& configuration) {
+        return !fits(suite.device().info(), workload, configuration);
     });
     std::deque<BuildRead<Record12>> works;
-    for (const Keeping& keeping : keepings)
-        works.emplace_back(suite, workload, keeping, Input::generated, keepings.size());
+    for (const Configuration& configuration : configurations)
+        works.emplace_back(suite, workload, configuration, Input::generated, configurations.size());
 
     // The time of a round comes first, then build and read of each storage, then the ratios.
     const std::vector<Samples> samples = sample(suite.sampling(), [&] {
@@ -90,9 +91,10 @@ Result compare_storages(const Suite& suite, const Workload& workload) {
             values.insert(values.end(), {build, read});
             values[0] += build + read;
         }
-        for_each_choice(keepings, [&](std::size_t chosen, std::size_t other) {
+        for_each_choice(configurations, [&](std::size_t chosen, std::size_t other) {
             const auto total = [&](std::size_t i) {
-                return times[i].first + keepings[chosen].options.expected_reads * times[i].second;
+                return times[i].first +
+                       configurations[chosen].options.expected_reads * times[i].second;
             };
             values.push_back(total(chosen) / total(other));
         });
@@ -100,14 +102,14 @@ Result compare_storages(const Suite& suite, const Workload& workload) {
     });
     Result result{samples[0], double(workload.nodes), 0};
     for (std::size_t i = 0; i < works.size(); ++i) {
-        const std::string& storage = keepings[i].storage;
+        const std::string& storage = configurations[i].storage;
         result.counters[storage + "_build_ms"] = 1e3 * samples[2 * i + 1].median;
         result.counters[storage + "_read_ms"] = 1e3 * samples[2 * i + 2].median;
         result.counters[storage + "_nodes_a_record"] = works[i].nodes_a_record();
     }
     auto ratio = samples.begin() + static_cast<std::ptrdiff_t>(2 * works.size() + 1);
-    for_each_choice(keepings, [&](std::size_t chosen, std::size_t other) {
-        result.counters[keepings[chosen].storage + "_to_" + keepings[other].storage] =
+    for_each_choice(configurations, [&](std::size_t chosen, std::size_t other) {
+        result.counters[configurations[chosen].storage + "_to_" + configurations[other].storage] =
             (ratio++)->median;
     });
     return result;
@@ -134,12 +136,14 @@ std::vector<Workload> storage_grid(const Suite& suite) {
 
 void add_storage(Suite& suite) {
     add_cases(suite, "build_read/input:generated", suite.readable_bases(), storages(),
-              []<class Record>(const Suite& s, const Workload& workload, const Keeping& keeping) {
-                  return build_read<Record>(s, workload, keeping, Input::generated);
+              []<class Record>(const Suite& s, const Workload& workload,
+                               const Configuration& configuration) {
+                  return build_read<Record>(s, workload, configuration, Input::generated);
               });
     add_cases(suite, "build_read/input:stored", suite.readable_bases(), storages(),
-              []<class Record>(const Suite& s, const Workload& workload, const Keeping& keeping) {
-                  return build_read<Record>(s, workload, keeping, Input::stored);
+              []<class Record>(const Suite& s, const Workload& workload,
+                               const Configuration& configuration) {
+                  return build_read<Record>(s, workload, configuration, Input::stored);
               });
     for (const Workload& workload : storage_grid(suite))
         suite.add("storage/" + workload.name(),

@@ -36,15 +36,16 @@ enum class Input { generated, stored };
 template <class Record>
 class Containers {
 public:
-    /// `by_turns` of these are used in turn, and together fill the caches. Throws
+    /// `interleaved` of these are used in turn, and together fill the caches. Throws
     /// std::runtime_error if the lists are wrong.
-    Containers(const Suite& suite, const Workload& workload, const Keeping& keeping,
-               Input input = Input::generated, std::size_t by_turns = 1)
-        : workload_(workload), options_(options_for(workload, keeping)) {
+    Containers(const Suite& suite, const Workload& workload, const Configuration& configuration,
+               Input input = Input::generated, std::size_t interleaved = 1)
+        : workload_(workload), options_(options_for(workload, configuration)) {
         const cellist::Device& device = suite.device();
         lists_.emplace_back(device, cellist::Shape{workload.cells()}, options_);
         insert_.emplace(device, source_of<Record>(kernels::insert_cl, "insert.cl"),
-                        input == Input::stored ? "insert_stored" : keeping.kernel, lists_.front());
+                        input == Input::stored ? "insert_stored" : configuration.kernel,
+                        lists_.front());
         if (input == Input::stored) store_input(device);
         const cellist::BuildReport report = settle(lists_.front());
         if (report.stored != workload.nodes)
@@ -52,11 +53,11 @@ public:
                                      std::to_string(workload.nodes));
         const Workload checked = readable(workload);
         if (checked.nodes == workload.nodes)
-            check(device, keeping);
+            check(device, configuration);
         else
-            Containers(suite, checked, keeping, input);
+            Containers(suite, checked, configuration, input);
 
-        while (lists_.size() < suite.copies(by_turns * lists_.front().pool_bytes())) {
+        while (lists_.size() < suite.copies(interleaved * lists_.front().pool_bytes())) {
             lists_.emplace_back(device, cellist::Shape{workload.cells()}, options_);
             settle(lists_.back());
         }
@@ -83,8 +84,9 @@ public:
     }
 
 private:
-    static cellist::ListsOptions options_for(const Workload& workload, const Keeping& keeping) {
-        cellist::ListsOptions options = keeping.options;
+    static cellist::ListsOptions options_for(const Workload& workload,
+                                             const Configuration& configuration) {
+        cellist::ListsOptions options = configuration.options;
         options.capacity_nodes = workload.nodes;
         if (options.storage == cellist::Storage::fixed) options.slots = expected(workload).longest;
         return options;
@@ -114,10 +116,10 @@ private:
                   workload_.distribution.id);
     }
 
-    void check(const cellist::Device& device, const Keeping& keeping) {
+    void check(const cellist::Device& device, const Configuration& configuration) {
         cellist::Lists<Record>& lists = lists_.front();
         // A kernel with a counter of its own leaves the counters of the shards wrong.
-        if (keeping.kernel == "insert")
+        if (configuration.kernel == "insert")
             if (const cellist::Validation found = lists.validate(); !found.ok())
                 throw std::runtime_error(found.message());
         cellist::Kernel read(device, source_of<Record>(kernels::read_cl, "read.cl"), "read", lists);
@@ -134,17 +136,17 @@ private:
     std::size_t turn_ = 0;
 };
 
-/// Adds a case for each workload and keeping that fit the device. Calls
-/// measure.operator()<Record>(suite, workload, keeping).
+/// Adds a case for each workload and configuration that fit the device. Calls
+/// measure.operator()<Record>(suite, workload, configuration).
 template <class Measure>
 void add_cases(Suite& suite, const std::string& name, const std::vector<Workload>& workloads,
-               const std::vector<Keeping>& keepings, const Measure& measure) {
-    for (const Keeping& keeping : keepings) {
+               const std::vector<Configuration>& configurations, const Measure& measure) {
+    for (const Configuration& configuration : configurations) {
         for (const Workload& workload : workloads) {
-            if (!fits(suite.device().info(), workload, keeping)) continue;
-            suite.add(name + "/" + keeping.name() + "/" + workload.name(), [=, &suite] {
+            if (!fits(suite.device().info(), workload, configuration)) continue;
+            suite.add(name + "/" + configuration.name() + "/" + workload.name(), [=, &suite] {
                 return with_record(workload.node_bytes, [&]<class Record>() {
-                    return measure.template operator()<Record>(suite, workload, keeping);
+                    return measure.template operator()<Record>(suite, workload, configuration);
                 });
             });
         }

@@ -26,12 +26,12 @@ std::vector<Workload> random_and_coherent(std::vector<Workload> workloads) {
     return workloads;
 }
 
-std::string Keeping::name() const {
+std::string Configuration::name() const {
     return "storage:" + storage + (allocation.empty() ? "" : "/allocation:" + allocation);
 }
 
-const std::vector<Keeping>& storages() {
-    static const std::vector<Keeping> all{
+const std::vector<Configuration>& storages() {
+    static const std::vector<Configuration> all{
         {"linked", "", {.storage = cellist::Storage::linked}},
         {"counted", "", {.storage = cellist::Storage::counted}},
         {"fixed", "", {.storage = cellist::Storage::fixed}},
@@ -39,29 +39,31 @@ const std::vector<Keeping>& storages() {
     return all;
 }
 
-const std::vector<Keeping>& automatic_storages() {
-    static const std::vector<Keeping> all{
+const std::vector<Configuration>& automatic_storages() {
+    static const std::vector<Configuration> all{
         {"automatic_1", "", {.storage = cellist::Storage::automatic, .expected_reads = 1}},
         {"automatic_8", "", {.storage = cellist::Storage::automatic, .expected_reads = 8}},
     };
     return all;
 }
 
-const std::vector<Keeping>& allocations() {
-    static const std::vector<Keeping> all{
+const std::vector<Configuration>& allocations() {
+    static const std::vector<Configuration> all{
         {"linked", "sharded", {}},
         {"linked", "global", {}, "insert_with_one_counter"},
     };
     return all;
 }
 
-bool fits(const cellist::DeviceInfo& device, const Workload& workload, const Keeping& keeping) {
+bool fits(const cellist::DeviceInfo& device, const Workload& workload,
+          const Configuration& configuration) {
     const double cells = workload.cells();
     const double nodes = workload.nodes;
     const double record_bytes = 4.0 * workload.words();
     double pool_bytes = workload.node_bytes * nodes;
-    if (keeping.options.storage == cellist::Storage::counted) pool_bytes = record_bytes * nodes;
-    if (keeping.options.storage == cellist::Storage::fixed)
+    if (configuration.options.storage == cellist::Storage::counted)
+        pool_bytes = record_bytes * nodes;
+    if (configuration.options.storage == cellist::Storage::fixed)
         pool_bytes = record_bytes * cells * workload.longest();
     // Beside the pool: heads, memory for the ceiling or a packed copy, and a reserve.
     return fits(device, pool_bytes, 3 * pool_bytes + 16 * cells);

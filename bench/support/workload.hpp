@@ -48,7 +48,7 @@ struct Workload {
 [[nodiscard]] std::vector<Workload> random_and_coherent(std::vector<Workload> workloads);
 
 /// How lists are kept.
-struct Keeping {
+struct Configuration {
     std::string storage;     ///< as benchmarks are named
     std::string allocation;  ///< the same; empty for what the options take by default
     cellist::ListsOptions options;
@@ -58,15 +58,15 @@ struct Keeping {
 };
 
 /// The storages, each with its default options.
-[[nodiscard]] const std::vector<Keeping>& storages();
+[[nodiscard]] const std::vector<Configuration>& storages();
 /// Storage::automatic, as automatic_1 and automatic_8 if it expects one read or eight.
-[[nodiscard]] const std::vector<Keeping>& automatic_storages();
+[[nodiscard]] const std::vector<Configuration>& automatic_storages();
 /// Linked lists with the library's sharded counters, and with the one counter of the papers.
-[[nodiscard]] const std::vector<Keeping>& allocations();
+[[nodiscard]] const std::vector<Configuration>& allocations();
 
 /// Whether a device of this size has room for a container of a workload and its measurement.
 [[nodiscard]] bool fits(const cellist::DeviceInfo& device, const Workload& workload,
-                        const Keeping& keeping);
+                        const Configuration& configuration);
 
 /// The same for arrays, by the bytes of the largest and of all together.
 [[nodiscard]] bool fits(const cellist::DeviceInfo& device, double largest_bytes, double all_bytes);

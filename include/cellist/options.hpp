@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -72,13 +73,15 @@ public:
 
     /// @private
     explicit StorageOption(detail::NearestKey key)
-        : storage_(Storage::fixed), nearest_(std::move(key)) {}
-    /// @private
-    [[nodiscard]] const std::optional<detail::NearestKey>& nearest_key() const { return nearest_; }
+        : storage_(Storage::fixed),
+          nearest_(std::make_shared<const detail::NearestKey>(std::move(key))) {}
+    /// @private Null unless the storage is that of nearest().
+    [[nodiscard]] const detail::NearestKey* nearest_key() const { return nearest_.get(); }
 
 private:
     Storage storage_;
-    std::optional<detail::NearestKey> nearest_;
+    std::shared_ptr<const detail::NearestKey>
+        nearest_;  // g++ 12 warns of an optional in users' code
 };
 
 /// Returns a storage with a fixed number of slots per cell, which keeps the records that come first
