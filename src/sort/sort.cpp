@@ -94,16 +94,19 @@ std::string piece_type(std::size_t node_bytes) {
     return {};
 }
 
-/// What the files of kernels for a sort take from the host; see sort.cl.
-std::string sort_definitions(const RecordType& record, bool linked, const SortKey& key,
-                             const SortTuning& tuning) {
+/// What the kernels of a sort take from the host; see sort.cl. Tunings add to it.
+std::string definitions_of(const RecordType& record, bool linked, const SortKey& key) {
     const std::string piece = piece_type(linked ? node_layout(record).size : record.size);
     return define("KEY_BITS", key.bits) + define("KEEPS_KEYS", is_member(key) ? 0 : 1) +
-           define("CHUNK_SIZE", tuning.chunk_size) + define("WIDTH", tuning.width) +
+           define("SEGMENT_BITS", segment_bits) +
+           (piece.empty() ? "" : "#define CELLIST_SORT_PIECE " + piece + "\n") + key_function(key);
+}
+
+std::string definitions_of(const SortTuning& tuning) {
+    return define("CHUNK_SIZE", tuning.chunk_size) + define("WIDTH", tuning.width) +
            define("ITEMS", tuning.items) + define("TEAM", tuning.team) +
            define("LISTS", tuning.lists) + define("MERGE_ITEMS", tuning.merge_items) +
-           define("TOP_K", tuning.top_k) + define("SEGMENT_BITS", segment_bits) +
-           (piece.empty() ? "" : "#define CELLIST_SORT_PIECE " + piece + "\n") + key_function(key);
+           define("TOP_K", tuning.top_k);
 }
 
 }  // namespace
@@ -114,7 +117,7 @@ ListSorter::ListSorter(MemoryOwner device, RecordKernels& kernels)
 Kernel& ListSorter::kernel(const KernelFile& file, const char* name, const Sort& sort,
                            const SortTuning& tuning) {
     return kernels_.get({{"sort.cl", kernels::sort_cl}, file}, name, sort.storage.mode(),
-                        sort_definitions(kernels_.record(), sort.linked, sort.key, tuning));
+                        definitions_of(tuning) + sort.definitions);
 }
 
 void ListSorter::clear_state() {
@@ -159,6 +162,7 @@ ListSorter::Sort ListSorter::sort_of(ListStorage& storage, const SortKey& key) c
             .key = key,
             .plan = SortPlan(device_type_, device_->info, linked, kernels_.record().size),
             .linked = linked,
+            .definitions = definitions_of(kernels_.record(), linked, key),
             .count = storage.cells()};
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include <cellist/detail/lists_core.hpp>
@@ -42,6 +43,7 @@ private:
         const SortKey& key;
         SortPlan plan;
         bool linked;
+        std::string definitions;   ///< for all kernels of this sort
         std::uint64_t count;       ///< lists that are left
         const Memory* cells = {};  ///< whose lists these are; null for all
         cl::Event done = {};       ///< of the last command
