@@ -83,7 +83,7 @@ TEST_CASE("lists are complete in every build of a trial and after it") {
         REQUIRE(lists.storage() != Storage::automatic);
         used.push_back(lists.storage());
     }
-    for (const Storage storage : all_storages)
+    for (const Storage storage : detail::choices)
         REQUIRE(std::find(used.begin(), used.end(), storage) != used.end());
     REQUIRE(contains(lists.storage_reason(), "= "));
     REQUIRE(contains(lists.storage_reason(), name_of(lists.storage())));

@@ -47,7 +47,7 @@ std::size_t count(const std::vector<Storage>& tried, Storage storage) {
 
 Profile profile_of(const Times& coherent, const Times& random, std::uint64_t of_records = records) {
     Profile profile(of_records);
-    for (const Storage storage : all_storages) {
+    for (const Storage storage : detail::choices) {
         profile.set_cost(storage, Pattern::coherent, coherent.of(storage));
         profile.set_cost(storage, Pattern::random, random.of(storage));
     }
@@ -67,7 +67,7 @@ TEST_CASE("the storage with the least time for a build and all reads is chosen")
             return times.of(storage).build_seconds + reads * times.of(storage).read_seconds;
         };
         INFO(tuner.reason());
-        for (const Storage storage : all_storages) {
+        for (const Storage storage : detail::choices) {
             REQUIRE(total(tuner.storage()) <= total(storage) * (1 + 1e-9));
             REQUIRE(count(tried, storage) >= 3);
         }
@@ -187,7 +187,7 @@ TEST_CASE("where the pool may not grow, fixed needs slots that are no more than 
         StorageTuner tuner(container(options), {});
         try_all(tuner, best_fixed);
         REQUIRE(tuner.storage() == Storage::fixed);
-        for (const Storage storage : all_storages) {
+        for (const Storage storage : detail::choices) {
             REQUIRE(tuner.options(storage).storage == storage);
             REQUIRE(tuner.options(storage).slots == 50u);
             REQUIRE(tuner.options(storage).capacity_nodes == 500'000u);

@@ -29,9 +29,7 @@ enum class Inserts { refused, accepted };
 
 /// How a container keeps its nodes: a pool, and the passes of a build. One class a storage.
 ///
-/// A new storage adds a class, a file in kernels/cellist/, and a row in each of five places:
-/// Storage (options.hpp), make_storage (storage.cpp), the modes (view.h), the library's text
-/// (kernel.cpp), and CELLIST_CALL_STORAGE with CELLIST_DEFINE_RECORD (lists.clh).
+/// CONTRIBUTING.md says which places a new storage changes.
 class ListStorage {
 public:
     virtual ~ListStorage() = default;
