@@ -292,14 +292,15 @@ void add_frame_options(support::CommandLine& line, FrameOptions& options) {
                      support::read_between("--alpha", text, 0, 1, "a number from 0 to 1"));
              });
     line.add("--up", "",
-             "axis that points up in the mesh files: x, y or z; by default, each file decides",
+             "axis that points up in the mesh files: x, y or z; by default, each file or its "
+             "format decides",
              "AXIS", [&](Text text) { options.up = read_up(text); });
     line.add("--blend", blend_text(options),
              "how surfaces blend: over, additive, multiplicative, absorb, or a file with a "
              "function",
              "KIND|FILE", [&](Text text) { read_blend(text, options); });
     line.add("--samples", std::to_string(options.quality.samples),
-             "samples of a pixel: 1, 2, 4 or 8", "N",
+             "samples per pixel: 1, 2, 4 or 8", "N",
              [&](Text text) { read_samples(text, options); });
     line.add("--resolve", options.quality.resolve == Resolve::per_pixel ? "pixel" : "sample",
              "where samples are blended: pixel or sample", "WHERE",

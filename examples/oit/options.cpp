@@ -49,7 +49,7 @@ void read_reduce(const std::string& text, Options& options) {
     if (text != "1" && text != "2" && text != "4") refuse("--reduce", text, "1, 2 or 4");
     options.quality.reduce = text.front() - '0';
     if (options.quality.reduce > 1 && options.quality.samples > 1)
-        throw support::InputError("--reduce draws one sample a pixel: leave out --samples");
+        throw support::InputError("--reduce draws one sample per pixel: leave out --samples");
 }
 
 // A number of bytes, or of a unit of them.
@@ -139,7 +139,7 @@ void add_quality_options(support::CommandLine& line, Options& options) {
     line.add("--layers", "all", "nearest layers to blend", "K|all",
              [&](Text text) { read_layers(text, options); });
     line.add("--epsilon", shortest(options.quality.epsilon),
-             "stop blending when no more than this part of the light passes", "E", [&](Text text) {
+             "stop blending once the transmittance is at most E", "E", [&](Text text) {
                  options.quality.epsilon = static_cast<float>(
                      support::read_between("--epsilon", text, 0, 1, "a number from 0 to 1"));
              });
@@ -147,8 +147,8 @@ void add_quality_options(support::CommandLine& line, Options& options) {
              "format of colour and depth in a fragment", "F",
              [&](Text text) { read_format(text, options); });
     line.add("--reduce", std::to_string(options.quality.reduce),
-             "draw transparent surfaces with 2 or 4 times fewer pixels a side, and enlarge them",
-             "N", [&](Text text) { read_reduce(text, options); });
+             "draw transparent surfaces with 1/N of the width and height, and enlarge them", "N",
+             [&](Text text) { read_reduce(text, options); });
     line.add("--memory", "",
              "limit on the device memory of the method, such as 64MiB; lists are drawn in slices",
              "BYTES", [&](Text text) { read_memory(text, options); });
@@ -166,9 +166,10 @@ void add_budget_options(support::CommandLine& line, Options& options, bool& stri
                  options.search_seconds = support::read_between("--search-seconds", text, 0, 1e6,
                                                                 "seconds from 0 to 1000000");
              });
-    line.add_flag("--strict", strict,
-                  "also apply the budget to undecided pixels, where float depths do not tell the "
-                  "order of layers");
+    line.add_flag(
+        "--strict", strict,
+        "also apply the budget to undecided pixels, where float depths do not resolve the "
+        "order of layers");
 }
 
 void add_motion_options(support::CommandLine& line, Options& options) {

@@ -86,7 +86,7 @@ bool run(const Options& options) {
                 search.lists().shape().to_string().c_str(),
                 static_cast<double>(search.lists().pool_bytes()) * 1e-6);
     std::printf(
-        "pairs       %llu, %.1f neighbours a point\n", static_cast<unsigned long long>(ends / 2),
+        "pairs       %llu, %.1f neighbours per point\n", static_cast<unsigned long long>(ends / 2),
         static_cast<double>(ends) / static_cast<double>(std::max<std::size_t>(options.points, 1)));
     std::printf("time        build %.1f ms, all pairs %.1f ms, together %.1f ms\n", build_ms.ms(),
                 find_ms.ms(), build_ms.ms() + find_ms.ms());

@@ -61,7 +61,7 @@ struct Element<M[count]> {
 /// its work on the device's queue. Calls that return results block until they have them. sort() and
 /// partial_sort() block until the lengths of the lists are known. Other calls block only while they
 /// compile kernels, or to finish a pending build. Under Overflow::drop they need not finish it,
-/// unless the storage is automatic.
+/// unless the storage is automatic; clear(), sort() and builds finish it under any policy.
 ///
 /// All functions except shape() and those that report sizes throw:
 /// - OpenClError if an OpenCL call fails.
@@ -148,8 +148,8 @@ public:
     /// Builds more records than the pool may hold, a range of cells at a time. The budget, the
     /// device's largest allocation and, unless the policy is to grow, capacity_nodes bound a slice.
     ///
-    /// `insert` enqueues the kernels as in build(). It runs once to count the records, then for
-    /// each slice to store them. The kernels must insert the same records every time. `read` runs
+    /// `insert` enqueues the kernels as in build(). It runs once to count the records, then
+    /// once for each slice, or twice in Storage::counted, to store them. The kernels must insert the same records every time. `read` runs
     /// for each slice, in order. It finds the lists of the slice's cells; all other lists are
     /// empty. `read` cannot build the lists: that throws Error. At the end all lists are empty.
     ///
@@ -187,7 +187,7 @@ public:
     /// Sorts every list by an OpenCL C expression of `record` with an integer or float value, such
     /// as "record.depth * record.depth". Throws OpenClError with the compiler's log if the
     /// expression does not compile. Throws Error if it is more than one expression, or if it
-    /// writes. Refused are commas outside parentheses, quoted text, directives, assignments,
+    /// writes. It refuses commas outside parentheses, quoted text, directives, assignments,
     /// pointers, and calls that write.
     ///
     /// No record is lost if the value differs between calls, for example after a division by 0 or
@@ -292,14 +292,14 @@ public:
     }
 
     [[nodiscard]] const Shape& shape() const { return core_->shape(); }
-    /// Returns how many records surely fit.
+    /// Returns the number of records that are certain to fit.
     [[nodiscard]] std::uint64_t capacity_nodes() const { return core_->capacity_nodes(); }
     /// Returns the size of all device memory that the container keeps: heads, nodes, counters, and
     /// the buffers for reuse by sorts, downloads and builds. budget_bytes bounds it.
     [[nodiscard]] std::uint64_t pool_bytes() const { return core_->pool_bytes(); }
     /// Returns the storage in use. In Storage::automatic it is the storage of the last build.
     [[nodiscard]] Storage storage() const { return core_->storage_in_use(); }
-    /// Returns a sentence for people: the storage of the next build, and the measurements that led
+    /// Returns a readable sentence: the storage of the next build, and the measurements that led
     /// to it.
     [[nodiscard]] std::string storage_reason() const { return core_->storage_reason(); }
 

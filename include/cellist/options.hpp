@@ -2,10 +2,7 @@
 
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <optional>
-#include <string>
-#include <utility>
 
 #include <cellist/struct.hpp>
 
@@ -56,8 +53,8 @@ namespace detail {
 
 /// The arguments of nearest(), by name.
 struct NearestKey {
-    std::string record;
-    std::string member;
+    const char* record = nullptr;
+    const char* member = nullptr;
     std::uint32_t slots = 0;
 };
 
@@ -72,16 +69,17 @@ public:
     operator Storage() const { return storage_; }
 
     /// @private
-    explicit StorageOption(detail::NearestKey key)
-        : storage_(Storage::fixed),
-          nearest_(std::make_shared<const detail::NearestKey>(std::move(key))) {}
+    explicit StorageOption(const detail::NearestKey& key)
+        : storage_(Storage::fixed), nearest_(key) {}
     /// @private Null unless the storage is that of nearest().
-    [[nodiscard]] const detail::NearestKey* nearest_key() const { return nearest_.get(); }
+    [[nodiscard]] const detail::NearestKey* nearest_key() const {
+        return nearest_.member == nullptr ? nullptr : &nearest_;
+    }
 
 private:
     Storage storage_;
-    std::shared_ptr<const detail::NearestKey>
-        nearest_;  // g++ 12 warns of an optional in users' code
+    // Of trivial types: g++ 12 warns of a destructor where users put options into a static vector.
+    detail::NearestKey nearest_;
 };
 
 /// Returns a storage with a fixed number of slots per cell, which keeps the records that come first
@@ -93,7 +91,7 @@ private:
 template <class T, class M>
 [[nodiscard]] StorageOption nearest(M T::*member, std::uint32_t slots) {
     static_assert(detail::Scalar<M>, "the nearest records are found by a scalar member");
-    return StorageOption({DeviceType<T>::name(), detail::member_name(member), slots});
+    return StorageOption({detail::description<T>.name, detail::member_name(member), slots});
 }
 
 /// The options of a container. The defaults are linked lists in a pool that grows.

@@ -53,7 +53,7 @@ struct Validation {
     [[nodiscard]] bool ok() const {
         return broken_links == 0 && repeated_nodes == 0 && lost_nodes == 0 && late_inserts == 0;
     }
-    /// Returns one line for people.
+    /// Returns one readable line.
     [[nodiscard]] std::string message() const;
 };
 

@@ -10,8 +10,8 @@ namespace {
 /// Which member of a record the key is. Throws Error for the key of another record.
 cl_uint member_index(const RecordType& record, const NearestKey& key) {
     if (key.record != record.name)
-        throw Error("nearest() names a member of " + key.record + ", and the lists are of " +
-                    record.name);
+        throw Error(std::string("nearest() names a member of ") + key.record +
+                    ", and the lists are of " + record.name);
     const auto member =
         std::find_if(record.members.begin(), record.members.end(),
                      [&](const RecordMember& candidate) { return candidate.name == key.member; });
@@ -74,7 +74,7 @@ void NearestStorage::prepare_threshold_pass() {
         const std::uint64_t more = words * sizeof(cl_uint) - heads.size_bytes();
         if (!pool_.has_room_for(more))
             throw MemoryError(
-                "records that are equal in " + options_.storage.nearest_key()->member +
+                std::string("records that are equal in ") + options_.storage.nearest_key()->member +
                 " take another word of thresholds: " + std::to_string(bytes() + more) +
                 " bytes in all, over the budget of " + std::to_string(options_.budget_bytes) +
                 ": raise budget_bytes");

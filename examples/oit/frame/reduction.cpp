@@ -40,7 +40,7 @@ std::vector<raster::View> reduced_views(const Frame& frame) {
 Frame reduced_frame(const Frame& frame) {
     if (frame.quality.samples > 1)
         throw support::InputError(
-            "surfaces at reduced resolution have one sample a pixel: draw with fewer samples, or "
+            "surfaces at reduced resolution have one sample per pixel: draw with fewer samples, or "
             "without reducing");
     Frame reduced = frame;
     reduced.views = reduced_views(frame);
