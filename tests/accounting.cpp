@@ -1,5 +1,5 @@
-// attempted == stored + dropped + rejected, and the lists hold what the report says, over random cases
-// of shape, capacity, distribution, storage, policy and work-group size.
+// attempted == stored + dropped + rejected, and the lists hold what the report says, over random
+// cases of shape, capacity, distribution, storage, policy and work-group size.
 #include <iostream>
 
 #include "support/inserts.hpp"

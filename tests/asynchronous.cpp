@@ -1,5 +1,5 @@
-// The twins of the blocking calls: what they return is what the blocking calls return, and what uses a
-// container before its build is finished waits for it.
+// The twins of the blocking calls: what they return is what the blocking calls return, and what
+// uses a container before its build is finished waits for it.
 #include "support/errors.hpp"
 #include "support/inserts.hpp"
 #include "support/storages.hpp"

@@ -1,4 +1,5 @@
-// What does not block by its documentation returns while the device waits for an event that comes later.
+// What does not block by its documentation returns while the device waits for an event that comes
+// later.
 #include <chrono>
 #include <future>
 

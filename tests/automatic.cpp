@@ -1,6 +1,6 @@
-// Storage::automatic does what the other storages do, while it tries them, when one is chosen, and when
-// the one that was chosen fails. Which is chosen depends on the device: tests that need a certain one
-// tell the tuner of times of their own.
+// Storage::automatic does what the other storages do, while it tries them, when one is chosen, and
+// when the one that was chosen fails. Which is chosen depends on the device: tests that need a
+// certain one tell the tuner of times of their own.
 #include "support/errors.hpp"
 #include "support/inserts.hpp"
 #include "support/internals.hpp"

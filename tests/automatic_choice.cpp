@@ -108,7 +108,8 @@ TEST_CASE("neither the first build nor a disturbed one counts") {
         const Storage storage = tuner.storage();
         builds = before == storage ? builds + 1 : 0;
         before = storage;
-        // Linked is the best, and has the slowest first build and one that takes half as long again.
+        // Linked is the best, and has the slowest first build and one that takes half as long
+        // again.
         double seconds = storage == Storage::linked ? 1e-3 : 1.1e-3;
         if (storage == Storage::linked && builds == 0) seconds = 1;
         if (storage == Storage::linked && builds == 2) seconds = 1.5e-3;

@@ -1,4 +1,5 @@
-// Coordinates of any type become the cell that they lie in; those outside of the shape are rejected.
+// Coordinates of any type become the cell that they lie in; those outside of the shape are
+// rejected.
 #include <cmath>
 #include <limits>
 

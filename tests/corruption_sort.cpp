@@ -1,5 +1,5 @@
-// Sorting lists whose links or offsets no build makes: it ends, writes nothing outside of the pool, and
-// says so where it finds out.
+// Sorting lists whose links or offsets no build makes: it ends, writes nothing outside of the pool,
+// and says so where it finds out.
 #include <iostream>
 
 #include "support/errors.hpp"
@@ -30,7 +30,8 @@ kernel void make_circle(CELLIST_LISTS(Item, lists), uint length)
     if (i < length) lists_nodes[i].next = (i + 1u) % length;
 }
 
-// The first node of a cell leads to the first of cell `target`, or to node `target` where there is no such cell.
+// The first node of a cell leads to the first of cell `target`, or to node `target` where there is
+// no such cell.
 kernel void cut(CELLIST_LISTS(Item, lists), uint cell, uint target)
 {
     lists_nodes[lists_heads[cell]].next =
@@ -131,7 +132,8 @@ TEST_CASE("all lists in one circle do not sort", "[corruption][oclgrind]") {
 TEST_CASE("links out of the pool and lists of other lengths do not sort", "[corruption]") {
     Corrupt corrupt(Storage::linked, CELLIST_EACH_DIVISION);
     Kernel cut(device(), source, "cut", corrupt.lists);
-    // Out of the pool; nowhere, so that nodes are lost; to another list, whose end two lists share then.
+    // Out of the pool; nowhere, so that nodes are lost; to another list, whose end two lists share
+    // then.
     for (const cl_uint target : {0x7FFFFFFFu, 0xFFFFFFFEu, 0xFFFFFFFFu, 5u})
         for (const bool partial : {false, true}) {
             INFO("a link to " << target);

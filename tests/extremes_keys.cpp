@@ -1,5 +1,5 @@
-// Every scalar type is a key, at the borders of its values: sorted lists are those of a stable sort on the
-// host, bit for bit, in every storage and order.
+// Every scalar type is a key, at the borders of its values: sorted lists are those of a stable sort
+// on the host, bit for bit, in every storage and order.
 #include <iostream>
 
 #include "support/extremes.hpp"
@@ -41,8 +41,9 @@ public:
         }
     }
 
-    /// Requires that a sort is one by `key`, a member or a function of the record, in both orders. Lists
-    /// in one piece are the same to a sort, counted or fixed: each takes one of the orders, by turns.
+    /// Requires that a sort is one by `key`, a member or a function of the record, in both orders.
+    /// Lists in one piece are the same to a sort, counted or fixed: each takes one of the orders,
+    /// by turns.
     void require_sorts(const Sort<T>& sort, auto key) {
         for (const Order order : all_orders) {
             const HostLists<T> expected = expect(key, order);

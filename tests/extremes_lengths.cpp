@@ -1,5 +1,5 @@
-// Lists of any length are sorted, those at the borders of every power of two too, and a cell that every
-// work-item inserts into loses nothing.
+// Lists of any length are sorted, those at the borders of every power of two too, and a cell that
+// every work-item inserts into loses nothing.
 #include <iostream>
 
 #include "support/extremes.hpp"

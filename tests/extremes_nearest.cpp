@@ -1,5 +1,5 @@
-// The nearest records by keys at the borders of their types are the first of the sorted lists: those that
-// kernels take, and those that nearest() keeps.
+// The nearest records by keys at the borders of their types are the first of the sorted lists:
+// those that kernels take, and those that nearest() keeps.
 #include <iostream>
 
 #include "support/extremes.hpp"

@@ -1,5 +1,5 @@
-// Inserts from kernels of any form: loops, divergent branches, ranges of 2 and 3 dimensions, several
-// containers.
+// Inserts from kernels of any form: loops, divergent branches, ranges of 2 and 3 dimensions,
+// several containers.
 #include "support/errors.hpp"
 #include "support/inserts.hpp"
 #include "support/storages.hpp"

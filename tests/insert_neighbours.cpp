@@ -1,5 +1,5 @@
-// Neighbours that share a cell, in every constellation of work-items: where the device has lanes, they
-// link to each other first.
+// Neighbours that share a cell, in every constellation of work-items: where the device has lanes,
+// they link to each other first.
 #include "support/inserts.hpp"
 #include "support/storages.hpp"
 

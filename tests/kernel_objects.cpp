@@ -1,5 +1,6 @@
-// Images, samplers, pipes and buffers are told from one another, by what they are and not by the class of
-// the C++ bindings that they come in; sizes of local and constant memory are compared with the device's.
+// Images, samplers, pipes and buffers are told from one another, by what they are and not by the
+// class of the C++ bindings that they come in; sizes of local and constant memory are compared with
+// the device's.
 #include "support/errors.hpp"
 #include "support/inserts.hpp"
 #include "support/skip.hpp"

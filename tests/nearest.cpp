@@ -1,4 +1,5 @@
-// The K nearest records of a cell are those that a full sort puts first, for any order of insertion.
+// The K nearest records of a cell are those that a full sort puts first, for any order of
+// insertion.
 #include <tuple>
 
 #include "support/inserts.hpp"

@@ -1,5 +1,5 @@
-// Every kernel of the library once, at sizes that a simulator runs in seconds. ctest runs these tests
-// under Oclgrind too, which reports invalid accesses and data races.
+// Every kernel of the library once, at sizes that a simulator runs in seconds. ctest runs these
+// tests under Oclgrind too, which reports invalid accesses and data races.
 #include "support/inserts.hpp"
 #include "support/storages.hpp"
 

@@ -1,4 +1,5 @@
-// Storage::counted makes room for exactly what it counted, or stops, or drops from the highest cells.
+// Storage::counted makes room for exactly what it counted, or stops, or drops from the highest
+// cells.
 #include "support/errors.hpp"
 #include "support/inserts.hpp"
 

@@ -1,5 +1,5 @@
-// Storage::counted in one pass, on processors: threads put records into partitions of the cells, and the library
-// moves them. Elsewhere the same builds count and fill.
+// Storage::counted in one pass, on processors: threads put records into partitions of the cells,
+// and the library moves them. Elsewhere the same builds count and fill.
 #include <functional>
 
 #include "support/errors.hpp"
@@ -124,7 +124,8 @@ TEST_CASE("partitions grow with the records, in as few passes as there can be") 
         const Inserts<Item> inserts = random_inserts(count, 300, random);
         const BuildReport report = inserter.build(lists, inserts);
         require_complete(report, count);
-        // An eighth more than before has room in the partitions, and blocks that nothing else needs.
+        // An eighth more than before has room in the partitions, and blocks that nothing else
+        // needs.
         const std::uint32_t passes = passes_of(Storage::counted, most);
         REQUIRE(report.passes == (passes == 1 && count > most + most / 4 ? 2 : passes));
         most = std::max<std::uint64_t>(most, count);

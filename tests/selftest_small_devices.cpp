@@ -1,4 +1,5 @@
-// `cellist selftest` takes its sizes from the device: it works on small ones, and within what they have.
+// `cellist selftest` takes its sizes from the device: it works on small ones, and within what they
+// have.
 #include <sstream>
 
 #include "command/selftest.hpp"

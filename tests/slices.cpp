@@ -24,8 +24,8 @@ struct Scene {
     Kernel kernel;
 };
 
-/// Downloads every slice, and requires that slices are in order, cover all cells, and leave no record
-/// in the cells of other slices.
+/// Downloads every slice, and requires that slices are in order, cover all cells, and leave no
+/// record in the cells of other slices.
 struct Collected {
     explicit Collected(Lists<Item>& from) : lists(from) {}
     void operator()(const Slice& slice) {

@@ -1,5 +1,5 @@
-// What sorts, packs and validates takes its sizes from the device: one with small work-groups and little
-// local memory.
+// What sorts, packs and validates takes its sizes from the device: one with small work-groups and
+// little local memory.
 #include "device/device_state.hpp"
 #include "support/inserts.hpp"
 #include "support/internals.hpp"

@@ -1,5 +1,5 @@
-// Lists are sorted in classes by their length, by one work-item or by many, in one pool or in two. The
-// result does not depend on it.
+// Lists are sorted in classes by their length, by one work-item or by many, in one pool or in two.
+// The result does not depend on it.
 #include <limits>
 
 #include "support/errors.hpp"

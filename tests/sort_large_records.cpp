@@ -1,4 +1,5 @@
-// Records of any size are sorted, packed and found, without private memory for more than a few of them.
+// Records of any size are sorted, packed and found, without private memory for more than a few of
+// them.
 #include "support/inserts.hpp"
 #include "support/internals.hpp"
 #include "support/storages.hpp"

@@ -1,5 +1,5 @@
-// A sort by an expression whose value changes from call to call loses no record, and neither does any class
-// of lists.
+// A sort by an expression whose value changes from call to call loses no record, and neither does
+// any class of lists.
 #include "support/inserts.hpp"
 #include "support/internals.hpp"
 #include "support/storages.hpp"

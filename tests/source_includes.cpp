@@ -1,4 +1,5 @@
-// A device keeps programs, but none that includes other files: these may change while the program runs.
+// A device keeps programs, but none that includes other files: these may change while the program
+// runs.
 #include <filesystem>
 #include <fstream>
 

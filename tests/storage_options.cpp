@@ -1,5 +1,5 @@
-// What a container starts with where its options say nothing, for each storage, and which options go
-// together.
+// What a container starts with where its options say nothing, for each storage, and which options
+// go together.
 #include "support/errors.hpp"
 #include "support/inserts.hpp"
 #include "support/storages.hpp"
@@ -124,7 +124,8 @@ TEST_CASE("options that a storage has no use for change nothing") {
 
 TEST_CASE("slices take any options") {
     for (Together row : together) {
-        // What is too much for a pool fits into several slices; a list that is too long for slots does not.
+        // What is too much for a pool fits into several slices; a list that is too long for slots
+        // does not.
         if (row.options.storage != Storage::fixed) row.stored = 140;
         require_outcome(row, [&](Lists<Item>& lists, auto insert) {
             std::uint64_t read = 0;

@@ -1,5 +1,5 @@
-// The file in which `cellist tune` keeps what it measured: whatever else stands in its place counts as
-// none.
+// The file in which `cellist tune` keeps what it measured: whatever else stands in its place counts
+// as none.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>

@@ -148,10 +148,11 @@ public:
     /// Builds more records than the pool may hold, a range of cells at a time. The budget, the
     /// device's largest allocation and, unless the policy is to grow, capacity_nodes bound a slice.
     ///
-    /// `insert` enqueues the kernels as in build(). It runs once to count the records, then
-    /// once for each slice, or twice in Storage::counted, to store them. The kernels must insert the same records every time. `read` runs
-    /// for each slice, in order. It finds the lists of the slice's cells; all other lists are
-    /// empty. `read` cannot build the lists: that throws Error. At the end all lists are empty.
+    /// `insert` enqueues the kernels as in build(). It runs once to count the records, then once
+    /// for each slice, or twice in Storage::counted, to store them. The kernels must insert the
+    /// same records every time. `read` runs for each slice, in order. It finds the lists of the
+    /// slice's cells; all other lists are empty. `read` cannot build the lists: that throws Error.
+    /// At the end all lists are empty.
     ///
     /// Throws OverflowError if a single list does not fit and the policy is not to drop. Throws
     /// Error if the kernels insert other records than they counted. Throws what `insert` or `read`

@@ -1,5 +1,5 @@
-// Compiles without a warning, whatever the user's flags: every public header, and every function template.
-// The flags stand in CMakeLists.txt.
+// Compiles without a warning, whatever the user's flags: every public header, and every function
+// template. The flags stand in CMakeLists.txt.
 #include <cellist/buffer.hpp>
 #include <cellist/cellist.hpp>
 #include <cellist/device.hpp>

@@ -1,4 +1,5 @@
-// Compiles. Each other file has one mistake, which the compiler must explain as its first line says.
+// Compiles. Each other file has one mistake, which the compiler must explain as its first line
+// says.
 #include <cellist/cellist.hpp>
 
 struct Hit {

@@ -1,8 +1,8 @@
-// The command lines of the programs. Input: lines. The first is the name of a program, the others are its
-// arguments; a backslash at the end of a line continues the argument on the next. The program runs in this
-// process, without any OpenCL platform, so that it ends where it would choose a device. Where the first
-// line starts with "run ", the program is started on a device instead, in a folder of its own: numbers are
-// cut to two digits then, and slashes become underscores.
+// The command lines of the programs. Input: lines. The first is the name of a program, the others
+// are its arguments; a backslash at the end of a line continues the argument on the next. The
+// program runs in this process, without any OpenCL platform, so that it ends where it would choose
+// a device. Where the first line starts with "run ", the program is started on a device instead, in
+// a folder of its own: numbers are cut to two digits then, and slashes become underscores.
 #include <cerrno>
 #include <csignal>
 #include <filesystem>

@@ -1,5 +1,5 @@
-// Expressions of sort_by. Input: 'g' and bytes that choose an expression of a small grammar, whose values
-// are computed here too; or any text, which is sorted by, or refused.
+// Expressions of sort_by. Input: 'g' and bytes that choose an expression of a small grammar, whose
+// values are computed here too; or any text, which is sorted by, or refused.
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
@@ -403,7 +403,8 @@ void require_whole(const Lists<Values>& lists) {
     }
 }
 
-/// Whether a text without "&&" has * or & without an operand before it, or next to a type or a bracket.
+/// Whether a text without "&&" has * or & without an operand before it, or next to a type or a
+/// bracket.
 bool uses_pointers(std::string text) {
     const std::string blanks = "[ \t\r\n]*", before = "(^|[^\\w)\\] \t\r\n])" + blanks;
     const std::string type =

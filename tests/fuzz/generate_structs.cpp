@@ -1,7 +1,8 @@
 // Writes the C++ source of a program's structs: generate_structs COUNT > structs.hpp
 //
-// Each struct S<n> has random members in random order, CELLIST_STRUCT, a function that visits its scalars
-// in order, and a source with two kernels that take it apart and put it together by the members' names.
+// Each struct S<n> has random members in random order, CELLIST_STRUCT, a function that visits its
+// scalars in order, and a source with two kernels that take it apart and put it together by the
+// members' names.
 #include <algorithm>
 #include <array>
 #include <cstdlib>

@@ -56,8 +56,8 @@ private:
 };
 
 /// The device of the inputs to come. Every 64th call makes a new one, so that its cache of programs
-/// does not grow without end; true in `is_new` then. Never destroyed at the end of the program, when the
-/// driver may be gone already.
+/// does not grow without end; true in `is_new` then. Never destroyed at the end of the program,
+/// when the driver may be gone already.
 inline const Device& device(bool& is_new) {
     static Device* shared = nullptr;
     static unsigned calls = 0;

@@ -1,5 +1,6 @@
-// Sources and compilers' logs of any content. Input: 'k' and what stands in a comment, a message and the
-// name of a kernel that is built; or a text for the functions that take sources and logs apart.
+// Sources and compilers' logs of any content. Input: 'k' and what stands in a comment, a message
+// and the name of a kernel that is built; or a text for the functions that take sources and logs
+// apart.
 #include <cerrno>
 #include <regex>
 #include <vector>
@@ -28,8 +29,8 @@ std::vector<std::string> lines_of(const std::string& text) {
     return parts;
 }
 
-/// The source without the library's includes. Lines are short enough for std::regex, which follows a line
-/// by recursion.
+/// The source without the library's includes. Lines are short enough for std::regex, which follows
+/// a line by recursion.
 std::string expected_source(const std::string& text, bool& uses_glm) {
     static const std::regex include(
         "^[ \t]*#[ \t]*include[ \t]*[<\"]cellist/(lists|glm)\\.clh[>\"]");
@@ -47,8 +48,8 @@ std::string expected_source(const std::string& text, bool& uses_glm) {
     return out;
 }
 
-/// What the places "<kernel>:N" of a log become where the text has two parts of two lines, each behind the
-/// line that names it: lines 1 to 3 and 4 to 6.
+/// What the places "<kernel>:N" of a log become where the text has two parts of two lines, each
+/// behind the line that names it: lines 1 to 3 and 4 to 6.
 std::string expected_log(const std::string& log) {
     const bool has_kernel = log.find("<kernel>:") != std::string::npos;
     const std::regex place(has_kernel ? "<kernel>:([0-9]+)" : "input\\.cl:([0-9]+)");

@@ -1,5 +1,5 @@
-// Structs of any members: the library's definition of them against the alignment rules of OpenCL C and
-// x86-64, which stand in this file, and against what the device says.
+// Structs of any members: the library's definition of them against the alignment rules of OpenCL C
+// and x86-64, which stand in this file, and against what the device says.
 //
 // Input: what to do, one to three structs, the seed of the records.
 #include <algorithm>

@@ -26,8 +26,9 @@ std::vector<T> extremes() {
     return all;
 }
 
-/// Of either sign: 0, the least normal number, 1, 2^24 (the first integer without a successor in float)
-/// and infinity, all with their neighbours, denormals among them, and NaNs, quiet and signalling.
+/// Of either sign: 0, the least normal number, 1, 2^24 (the first integer without a successor in
+/// float) and infinity, all with their neighbours, denormals among them, and NaNs, quiet and
+/// signalling.
 template <std::floating_point T>
 std::vector<T> extremes() {
     using Limits = std::numeric_limits<T>;

@@ -109,7 +109,8 @@ Oracle<T> oracle_of(const Inserts<T>& inserts, std::uint64_t cells) {
     return oracle;
 }
 
-/// Records as bytes in ascending order: a multiset that any type without padding can be compared by.
+/// Records as bytes in ascending order: a multiset that any type without padding can be compared
+/// by.
 template <class T, class Records>
 std::vector<std::array<unsigned char, sizeof(T)>> sorted_bytes(const Records& records) {
     std::vector<std::array<unsigned char, sizeof(T)>> all;
@@ -155,8 +156,8 @@ inline void require_complete(const BuildReport& report, std::uint64_t stored,
     REQUIRE(report.capacity_nodes >= stored);
 }
 
-/// Runs of the kernel in a build that need not grow a pool of this capacity: Storage::counted counts and
-/// fills, but on processors whose threads have partitions of the cells.
+/// Runs of the kernel in a build that need not grow a pool of this capacity: Storage::counted
+/// counts and fills, but on processors whose threads have partitions of the cells.
 inline std::uint32_t passes_of(Storage storage, std::uint64_t capacity_nodes) {
     const DeviceInfo& info = device().info();
     const std::uint64_t threads = info.compute_units;

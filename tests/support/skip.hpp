@@ -4,8 +4,8 @@
 
 namespace cellist::test {
 
-/// Notes that the running test case, or a part of it, does not run here, and why. The program lists these
-/// notes at its end. If no case of a program ran, it exits with `skipped_exit_code`.
+/// Notes that the running test case, or a part of it, does not run here, and why. The program lists
+/// these notes at its end. If no case of a program ran, it exits with `skipped_exit_code`.
 void note_skip(const std::string& reason);
 
 /// What ctest takes as skipped: see SKIP_RETURN_CODE.

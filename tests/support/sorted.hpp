@@ -22,8 +22,9 @@ constexpr std::string_view name_of(Order order) {
     return order == Order::ascending ? "ascending" : "descending";
 }
 
-/// A key in the order of the documentation: integers by value, floats -inf < ... < -0 < +0 < ... < +inf
-/// < NaN. That is the total order of IEEE 754, but for its negative NaNs, which it has in front.
+/// A key in the order of the documentation: integers by value, floats -inf < ... < -0 < +0 < ... <
+/// +inf < NaN. That is the total order of IEEE 754, but for its negative NaNs, which it has in
+/// front.
 template <class T>
 struct Ordered {
     T key;

@@ -38,9 +38,9 @@ ListReader reader_of(const Quality& quality, const std::optional<ListReader>& re
     return blending_reader(quality, define("OIT_NEAREST", *quality.layers));
 }
 
-// The first frame blocks until the lengths of the lists are known. Later frames are enqueued at once,
-// into a pool a quarter larger. A frame that overflows this pool is drawn again as the first. So are
-// all frames if the larger pool cannot be allocated.
+// The first frame blocks until the lengths of the lists are known. Later frames are enqueued at
+// once, into a pool a quarter larger. A frame that overflows this pool is drawn again as the first.
+// So are all frames if the larger pool cannot be allocated.
 template <class Node>
 class ListMethod : public Method {
 public:
@@ -116,8 +116,8 @@ private:
 
     [[nodiscard]] bool keeps_all() const { return options_.overflow == cellist::Overflow::grow; }
 
-    // Makes a pool for a quarter more fragments than lengths_ says. If that is more than the budget or
-    // the device has, the pool goes on to grow.
+    // Makes a pool for a quarter more fragments than lengths_ says. If that is more than the budget
+    // or the device has, the pool goes on to grow.
     void fix_capacity() {
         const auto more = [](std::uint64_t n) { return n + n / 4 + 1; };
         cellist::ListsOptions options = options_;
