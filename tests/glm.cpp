@@ -22,7 +22,6 @@ struct Sample {
     glm::vec4 colour;
     glm::ivec3 cell;
     glm::uvec2 ids;
-    friend bool operator==(const Sample&, const Sample&) = default;
 };
 CELLIST_STRUCT(Sample, position, uv, colour, cell, ids);
 static_assert(sizeof(Sample) == 56);

@@ -50,20 +50,20 @@ TEST_CASE_METHOD(Objects, "an argument of another kind is refused, naming both k
         const char* parameter;
         const char* takes;
     };
-    for (const auto& [name, parameter, takes] :
-         {Taker{"buffer", "'global float* x'", "a buffer"},
-          Taker{"reads2", "'read_only image2d_t i'", "an image"},
-          Taker{"writes2", "'write_only image2d_t i'", "an image"},
-          Taker{"reads1b", "'read_only image1d_buffer_t i'", "an image"},
-          Taker{"samples", "'sampler_t s'", "a sampler"},
-          Taker{"shares", "'local uint* l'", "local memory"},
-          Taker{"value", "'uint v'", "a value"}}) {
-        Kernel taker = kernel(name);
+    for (const Taker& expected : {Taker{"buffer", "'global float* x'", "a buffer"},
+                                  Taker{"reads2", "'read_only image2d_t i'", "an image"},
+                                  Taker{"writes2", "'write_only image2d_t i'", "an image"},
+                                  Taker{"reads1b", "'read_only image1d_buffer_t i'", "an image"},
+                                  Taker{"samples", "'sampler_t s'", "a sampler"},
+                                  Taker{"shares", "'local uint* l'", "local memory"},
+                                  Taker{"value", "'uint v'", "a value"}}) {
+        Kernel taker = kernel(expected.name);
         const auto refused = [&](const auto& argument, const std::string& what) {
-            if (what == takes) return;
+            if (what == expected.takes) return;
             const std::string message = refusal(taker, argument);
-            REQUIRE(contains(message, parameter));
-            REQUIRE(contains(message, std::string("takes ") + takes + ", was given " + what));
+            REQUIRE(contains(message, expected.parameter));
+            REQUIRE(
+                contains(message, std::string("takes ") + expected.takes + ", was given " + what));
         };
         refused(buffer, "a buffer");
         refused(buffer.cl(), "a buffer");

@@ -88,7 +88,7 @@ TEST_CASE("what is not one expression is refused, and what is wrong with it is n
              {std::string(10'000, '~') + "record.id", "10009"},
          }) {
         INFO(expression.substr(0, 100));
-        const auto error = error_of([&] { (*lists).sort_by(expression); });
+        const auto error = error_of([&, &text = expression] { (*lists).sort_by(text); });
         INFO(error.what());
         REQUIRE(contains(error.what(), named));
         REQUIRE_FALSE(contains(error.what(), "clBuildProgram"));

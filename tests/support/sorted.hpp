@@ -31,7 +31,7 @@ struct Ordered {
 
     friend std::strong_ordering operator<=>(const Ordered& a, const Ordered& b) {
         if constexpr (std::is_floating_point_v<T>) {
-            const auto is_last = [](T key) { return std::isnan(key) && std::signbit(key); };
+            const auto is_last = [](T value) { return std::isnan(value) && std::signbit(value); };
             if (is_last(a.key) != is_last(b.key)) return is_last(a.key) <=> is_last(b.key);
             return std::strong_order(a.key, b.key);
         } else {

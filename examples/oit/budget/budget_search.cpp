@@ -34,8 +34,7 @@ std::vector<std::uint32_t> layer_counts_of(const std::vector<Setting>& settings)
         if (setting.quality.size) counts.push_back(*setting.quality.size);
     }
     std::ranges::sort(counts);
-    const auto [first, last] = std::ranges::unique(counts);
-    counts.erase(first, last);
+    counts.erase(std::unique(counts.begin(), counts.end()), counts.end());
     return counts;
 }
 

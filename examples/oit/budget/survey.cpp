@@ -1,5 +1,6 @@
 #include "budget/survey.hpp"
 
+#include <limits>
 #include <sstream>
 
 #include "frame/fragment_source.hpp"
@@ -74,7 +75,7 @@ struct Metrics {
     std::vector<double> sum;
 
     Metrics(const std::vector<cl_float>& groups, std::size_t maxima, std::size_t sums)
-        : most(maxima, -INFINITY), sum(sums, 0.0) {
+        : most(maxima, -std::numeric_limits<double>::infinity()), sum(sums, 0.0) {
         const std::size_t width = maxima + sums;
         for (std::size_t at = 0; at < groups.size(); ++at) {
             const auto value = static_cast<double>(groups[at]);

@@ -98,7 +98,7 @@ private:
     };
     static constexpr std::array<Plane, 5> planes{
         {{nullptr, 0}, {&Vertex::x, 1}, {&Vertex::x, -1}, {&Vertex::y, 1}, {&Vertex::y, -1}}};
-    static constexpr Real guard{RASTER_GUARD};
+    static constexpr Real guard = static_cast<Real>(RASTER_GUARD);
 
     [[nodiscard]] static Real row(const Row& r, const glm::vec3& p) {
         Real sum = r[3];
