@@ -16,6 +16,12 @@ using support::InputError;
 using support::load_mesh;
 using support::Mesh;
 
+std::string ply_header(int vertices, int faces) {
+    return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(vertices) +
+           "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+           std::to_string(faces) + "\nproperty list uchar int vertex_indices\nend_header\n";
+}
+
 TEST_CASE("OBJ, PLY and STL files give the same mesh") {
     const Folder folder;
     const Mesh knot = torus_knot(2, 3, 60, 8);
@@ -75,12 +81,9 @@ TEST_CASE("polygons are triangulated, points and lines are counted") {
 
 TEST_CASE("triangles with NaN or infinite vertices are dropped and counted") {
     const Folder folder;
-    const Mesh mesh = load_mesh(
-        folder.write("n.ply",
-                     "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float "
-                     "y\nproperty float "
-                     "z\nelement face 3\nproperty list uchar int vertex_indices\nend_header\n"
-                     "0 0 0\n1 0 0\n0 1 0\nnan 0 0\n0 inf 0\n3 0 1 2\n3 0 1 3\n3 0 4 2\n"));
+    const Mesh mesh = load_mesh(folder.write(
+        "n.ply",
+        ply_header(5, 3) + "0 0 0\n1 0 0\n0 1 0\nnan 0 0\n0 inf 0\n3 0 1 2\n3 0 1 3\n3 0 4 2\n"));
     CHECK(mesh.triangles.size() == 1);
     CHECK(mesh.drops.nonfinite_vertices == 2);
     CHECK(mesh.drops.nonfinite_triangles == 2);
@@ -88,12 +91,8 @@ TEST_CASE("triangles with NaN or infinite vertices are dropped and counted") {
 
 TEST_CASE("triangles with indices out of range or equal corners are dropped and counted") {
     const Folder folder;
-    const Mesh mesh = load_mesh(
-        folder.write("i.ply",
-                     "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float "
-                     "y\nproperty float "
-                     "z\nelement face 3\nproperty list uchar int vertex_indices\nend_header\n"
-                     "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 3\n3 0 1 1\n"));
+    const Mesh mesh = load_mesh(folder.write(
+        "i.ply", ply_header(3, 3) + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 3\n3 0 1 1\n"));
     CHECK(mesh.triangles.size() == 1);
     CHECK(mesh.drops.out_of_range_triangles == 1);
     CHECK(mesh.drops.degenerate_triangles == 1);
