@@ -37,6 +37,7 @@ void Build::require_buildable() const {
         container->require_buildable();
         if (std::count(containers_.begin(), containers_.end(), container) > 1)
             throw Error("a build names the same container twice");
+        if (container->device() == first.device()) continue;
         const bool same_device = container->device()->device() == first.device()->device();
         if (!same_device || container->device()->context() != first.device()->context())
             throw Error("one build cannot fill the " + first.description() + " on " +
