@@ -20,8 +20,7 @@ kernel void insert(CELLIST_LISTS(Item, lists))
 )";
 
 TEST_CASE("every way to build a container inside of its own build is refused") {
-    const Storage storage =
-        GENERATE(Storage::linked, Storage::counted, Storage::fixed, Storage::automatic);
+    const Storage storage = GENERATE(from_range(all_storages), value(Storage::automatic));
     INFO(name_of(storage));
     Lists<Item> lists(device(), {17}, {.storage = storage});
     Lists<Item> other(device(), {17});
@@ -77,8 +76,7 @@ TEST_CASE("a refusal that is not caught ends the build around it") {
 }
 
 TEST_CASE("a container that is replaced in the midst of its build ends it with an error") {
-    const Storage storage =
-        GENERATE(Storage::linked, Storage::counted, Storage::fixed, Storage::automatic);
+    const Storage storage = GENERATE(from_range(all_storages), value(Storage::automatic));
     INFO(name_of(storage));
     const auto made = [&](std::uint64_t capacity) {
         return Lists<Item>(device(), {17},

@@ -73,8 +73,8 @@ ListsOptions with_room(Storage storage, bool room, Overflow overflow = Overflow:
 }
 
 TEST_CASE("two containers of any storages are built at once, growing or not") {
-    const Storage first = GENERATE(Storage::linked, Storage::counted, Storage::fixed);
-    const Storage second = GENERATE(Storage::linked, Storage::counted, Storage::fixed);
+    const Storage first = GENERATE(from_range(all_storages));
+    const Storage second = GENERATE(from_range(all_storages));
     for (const bool room_a : {true, false})
         for (const bool room_b : {true, false}) {
             INFO(name_of(first) << (room_a ? "" : ", growing") << " and " << name_of(second)
@@ -147,8 +147,8 @@ TEST_CASE("three containers of three storages and policies are built at once") {
 }
 
 TEST_CASE("all containers are empty after one of two has thrown") {
-    const Storage first = GENERATE(Storage::linked, Storage::counted, Storage::fixed);
-    const Storage second = GENERATE(Storage::linked, Storage::counted, Storage::fixed);
+    const Storage first = GENERATE(from_range(all_storages));
+    const Storage second = GENERATE(from_range(all_storages));
     constexpr cl_uint count = 500;
     const Expected expected(count);
     for (const bool room_a : {true, false}) {
@@ -174,8 +174,8 @@ TEST_CASE("all containers are empty after one of two has thrown") {
 }
 
 TEST_CASE("all containers are empty after the inserting code has thrown, in any pass") {
-    const Storage first = GENERATE(Storage::linked, Storage::counted, Storage::fixed);
-    const Storage second = GENERATE(Storage::linked, Storage::counted, Storage::fixed);
+    const Storage first = GENERATE(from_range(all_storages));
+    const Storage second = GENERATE(from_range(all_storages));
     INFO(name_of(first) << " and " << name_of(second));
     constexpr cl_uint count = 500;
     for (const int failing : {1, 2}) {

@@ -158,7 +158,7 @@ TEST_CASE("a build that keeps the nearest is started without blocking, and besid
     for (cl_uint i = 0; i < 3000; ++i)
         inserts.add(below(random, 7), {static_cast<cl_float>(below(random, 4)), i});
     Lists<Item> few(device(), {7}, {.storage = nearest(&Item::key, 10)});
-    const Storage other = GENERATE(Storage::linked, Storage::counted, Storage::fixed);
+    const Storage other = GENERATE(from_range(all_storages));
     Lists<Item> all(device(), {7}, {.storage = other, .capacity_nodes = 10});
     Kernel kernel(device(), insert_source("Item"), "insert_all", few);
     const Buffer<cl_uint> cells(device(), inserts.cells);

@@ -26,27 +26,19 @@ TEST_CASE("fixed starts with four slots for each cell, and has no use for capaci
 }
 
 TEST_CASE("the memory of a container is its heads, its nodes and its counters") {
-    CELLIST_EACH_STORAGE(storage);
-    const auto bytes = [&](std::uint64_t cells, std::uint32_t room) {
+    // Words of each cell, and bytes of a node, its link included.
+    const auto [storage, cell_words, node_bytes] =
+        GENERATE(table<Storage, std::uint64_t, std::uint64_t>(
+            {{Storage::linked, 1, 12}, {Storage::counted, 2, 8}, {Storage::fixed, 1, 8 * 100}}));
+    INFO(name_of(storage));
+    const auto bytes = [&, storage = storage](std::uint64_t cells, std::uint32_t room) {
         return Lists<Item>(device(), {cells},
                            {.storage = storage, .capacity_nodes = room, .slots = room})
             .pool_bytes();
     };
-    const std::uint64_t counters = bytes(0, 0) - (storage == Storage::counted ? 4 : 0);
-    REQUIRE(counters <= 257 * 64);
-    switch (storage) {
-        case Storage::linked:
-            REQUIRE(bytes(100, 7) == counters + 100 * 4 + 7 * 12);
-            break;
-        case Storage::counted:
-            REQUIRE(bytes(100, 7) == counters + 201 * 4 + 7 * 8);
-            break;
-        case Storage::fixed:
-            REQUIRE(bytes(100, 7) == counters + 100 * 4 + 100 * 7 * 8);
-            break;
-        case Storage::automatic:
-            break;
-    }
+    const std::uint64_t counters = bytes(0, 0);
+    REQUIRE(counters <= 257 * 64 + (storage == Storage::counted ? 4 : 0));
+    REQUIRE(bytes(100, 7) == counters + 100 * 4 * cell_words + 7 * node_bytes);
 }
 
 TEST_CASE("a storage that does not exist is refused") {

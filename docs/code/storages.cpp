@@ -41,8 +41,7 @@ int main() {
 
     // The same kernel fills any storage.
     std::vector<std::vector<cl_uint>> results;
-    for (auto storage :
-         {cellist::Storage::linked, cellist::Storage::counted, cellist::Storage::fixed}) {
+    for (auto storage : cellist::all_storages) {
         cellist::Lists<Sample> samples(device, {1000}, {.storage = storage});
         cellist::Kernel sample(device, source, "sample", samples);
         samples.build(sample, 100'000);

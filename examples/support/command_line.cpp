@@ -27,10 +27,12 @@ std::string meant_option(const CLI::App& app) {
 }
 
 cellist::Storage read_storage(const std::string& text) {
-    for (const auto storage :
-         {cellist::Storage::linked, cellist::Storage::counted, cellist::Storage::fixed})
+    std::string names;
+    for (const auto storage : cellist::all_storages) {
         if (text == name_of(storage)) return storage;
-    refuse("--storage", text, "linked, counted or fixed");
+        names += (names.empty() ? "" : " or ") + std::string(name_of(storage));
+    }
+    refuse("--storage", text, names);
 }
 
 // The fewest digits that are read as this number again.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -33,6 +34,9 @@ enum class Storage {
     /// fastest then stays in use. See docs/storages.md.
     automatic,
 };
+
+/// Every storage but Storage::automatic.
+inline constexpr std::array all_storages{Storage::linked, Storage::counted, Storage::fixed};
 
 /// Returns the name of a storage, e.g. "linked".
 [[nodiscard]] constexpr const char* name_of(Storage storage) {

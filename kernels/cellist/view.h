@@ -31,20 +31,28 @@
 #define CELLIST_EXTENT_MAX 0x7FFFFFFFu
 
 // How the nodes are arranged, and what an insert does. The host compiles a program for the modes of
-// its containers only. Each file describes the heads and nodes of its modes.
-#define CELLIST_LINKED 1u           // linked.clh
-#define CELLIST_COUNTING 2u         // counted.clh
-#define CELLIST_CONTIGUOUS 4u       // counted.clh
-#define CELLIST_FIXED 8u            // fixed.clh
-#define CELLIST_THRESHOLD_PASS 16u  // nearest.clh
-#define CELLIST_SELECTION_PASS 32u  // nearest.clh
-#define CELLIST_PARTITIONED 64u     // counted.clh
+// its containers only.
+#define CELLIST_LINKED 1u
+#define CELLIST_COUNTING 2u
+#define CELLIST_CONTIGUOUS 4u
+#define CELLIST_FIXED 8u
+#define CELLIST_THRESHOLD_PASS 16u
+#define CELLIST_SELECTION_PASS 32u
+#define CELLIST_PARTITIONED 64u
+
+// Every storage: ROW(name, its modes, a, b). <name>.clh describes the heads and nodes of the modes;
+// storage_<name>.cpp is the host's part.
+#define CELLIST_STORAGES(ROW, a, b)                                                                \
+    ROW(linked, CELLIST_LINKED, a, b)                                                              \
+    ROW(counted, CELLIST_COUNTING | CELLIST_CONTIGUOUS | CELLIST_PARTITIONED, a, b)                \
+    ROW(fixed, CELLIST_FIXED, a, b)                                                                \
+    ROW(nearest, CELLIST_THRESHOLD_PASS | CELLIST_SELECTION_PASS, a, b)
 
 #ifdef __OPENCL_VERSION__
-// Whether a container has a mode. Known at compile time unless the program's containers differ: the
-// host defines CELLIST_MODES, the set of their modes.
-#define cellist_has_mode(view, bit)                                                                \
-    (CELLIST_MODES == (bit) || ((CELLIST_MODES & (bit)) && (view).mode == (bit)))
+// Whether a container has one of these modes. Known at compile time unless the program's containers
+// differ: the host defines CELLIST_MODES, the set of their modes.
+#define cellist_has_mode(view, modes)                                                              \
+    (!(CELLIST_MODES & ~(modes)) || ((CELLIST_MODES & (modes)) && ((view).mode & (modes))))
 
 #define CELLIST_OVERLOAD __attribute__((overloadable))
 #endif

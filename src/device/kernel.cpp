@@ -57,10 +57,10 @@ ProgramText whole_source(const Source& source, const detail::Definitions& defini
     whole.add(kernels::warp_clh, "cellist/warp.clh");
     whole.add(kernels::threads_clh, "cellist/threads.clh");
     whole.add(kernels::allocation_clh, "cellist/allocation.clh");
-    whole.add(kernels::linked_clh, "cellist/linked.clh");
-    whole.add(kernels::counted_clh, "cellist/counted.clh");
-    whole.add(kernels::fixed_clh, "cellist/fixed.clh");
-    whole.add(kernels::nearest_clh, "cellist/nearest.clh");
+#define CELLIST_ADD_STORAGE(name, modes, unused, unused_too)                                       \
+    whole.add(kernels::name##_clh, "cellist/" #name ".clh");
+    CELLIST_STORAGES(CELLIST_ADD_STORAGE, , )
+#undef CELLIST_ADD_STORAGE
     whole.add(kernels::lists_clh, "cellist/lists.clh");
     whole.add(all.source(), structs);
     whole.add(show, "options");

@@ -10,7 +10,7 @@
 #include "sort/sort.hpp"
 #include "storage/cell_scan.hpp"
 #include "storage/container_storage.hpp"
-#include "storage/storages.hpp"
+#include "storage/storage_counted.hpp"
 #include "tune/automatic.hpp"
 
 namespace cellist::detail {

@@ -1,8 +1,7 @@
 #include "storage/storage.hpp"
 
 #include <iterator>
-
-#include "storage/storages.hpp"
+#include <string_view>
 
 namespace cellist::detail {
 
@@ -18,6 +17,11 @@ ListStorage::ListStorage(RecordKernels& kernels, const Shape& shape, const Lists
         view_.extent[i] = static_cast<cl_uint>(shape.extent(i));
     view_.cells = static_cast<cl_uint>(shape.cells());
     view_.mode = mode;
+}
+
+void ListStorage::require_given(bool given, const char* size) const {
+    if (options_.overflow != Overflow::grow && !given)
+        throw Error(std::string("an Overflow other than grow needs ") + size);
 }
 
 void ListStorage::allocate_first(std::uint64_t capacity_nodes) {
@@ -97,23 +101,12 @@ PendingRead ListStorage::find(Findings& findings, Kernel& kernel,
 
 std::unique_ptr<ListStorage> make_storage(RecordKernels& kernels, const Shape& shape,
                                           const ListsOptions& options) {
-    if (options.storage.nearest_key())
-        return std::make_unique<NearestStorage>(kernels, shape, options);
-    const bool fixed = options.storage == Storage::fixed;
-    if (options.overflow != Overflow::grow &&
-        !(fixed ? options.slots.has_value() : options.capacity_nodes.has_value()))
-        throw Error(std::string("an Overflow other than grow needs ") +
-                    (fixed ? "slots in Storage::fixed" : "capacity_nodes"));
-    switch (options.storage) {
-        case Storage::linked:
-            return std::make_unique<LinkedStorage>(kernels, shape, options);
-        case Storage::counted:
-            return std::make_unique<CountedStorage>(kernels, shape, options);
-        case Storage::fixed:
-            return std::make_unique<FixedStorage>(kernels, shape, options);
-        case Storage::automatic:
-            break;
-    }
+    const std::string_view storage =
+        options.storage.nearest_key() ? "nearest" : name_of(options.storage);
+#define CELLIST_MAKE_STORAGE(name, modes, unused, unused_too)                                      \
+    if (storage == #name) return make_##name(kernels, shape, options);
+    CELLIST_STORAGES(CELLIST_MAKE_STORAGE, , )
+#undef CELLIST_MAKE_STORAGE
     throw Error("unknown storage");
 }
 

@@ -116,6 +116,8 @@ protected:
     void add_to(Arguments& arguments, const Memory& nodes, const Memory& heads,
                 const cellist_view& view) const;
     [[nodiscard]] const RecordType& record() const { return kernels_.record(); }
+    /// Throws Error if the policy needs a size that the options do not give.
+    void require_given(bool given, const char* size) const;
     /// Makes a pool of this capacity. Throws MemoryError if a limit forbids it.
     void allocate_first(std::uint64_t capacity_nodes);
     /// Waits for the counters of the last pass.
@@ -170,6 +172,13 @@ protected:
     if (findings.bad_cell_from_end == 0) return {};
     return CELLIST_NONE - findings.bad_cell_from_end;
 }
+
+// make_<name>() of each storage, in storage_<name>.cpp: may throw as make_storage() does.
+#define CELLIST_DECLARE_STORAGE(name, modes, unused, unused_too)                                   \
+    std::unique_ptr<ListStorage> make_##name(RecordKernels& kernels, const Shape& shape,           \
+                                             const ListsOptions& options);
+CELLIST_STORAGES(CELLIST_DECLARE_STORAGE, , )
+#undef CELLIST_DECLARE_STORAGE
 
 /// The storage that the options name, with empty lists. Throws Error if a size exceeds a limit.
 [[nodiscard]] std::unique_ptr<ListStorage> make_storage(RecordKernels& kernels, const Shape& shape,

@@ -1,7 +1,8 @@
+#include "storage/storage_counted.hpp"
+
 #include <algorithm>
 
 #include "cellist_kernels.hpp"
-#include "storage/storages.hpp"
 
 namespace cellist::detail {
 
@@ -11,6 +12,7 @@ CountedStorage::CountedStorage(RecordKernels& kernels, const Shape& shape,
           kernels, shape, options, CELLIST_CONTIGUOUS,
           {.node_bytes = kernels.record().size, .head_words_a_cell = 2, .more_head_words = 1}),
       scan_(pool_.owner(), shape.cells(), counts_at()) {
+    require_given(options.capacity_nodes.has_value(), "capacity_nodes");
     allocate_first(options.capacity_nodes.value_or(0));
     clear();
 }
@@ -254,6 +256,11 @@ std::function<Validation()> CountedStorage::validate() {
                           found.unfilled + (found.broken == 0 ? lost : 0), counters.late,
                           bad_cell(found)};
     };
+}
+
+std::unique_ptr<ListStorage> make_counted(RecordKernels& kernels, const Shape& shape,
+                                          const ListsOptions& options) {
+    return std::make_unique<CountedStorage>(kernels, shape, options);
 }
 
 }  // namespace cellist::detail

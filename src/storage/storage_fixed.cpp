@@ -1,14 +1,50 @@
 #include <algorithm>
 
 #include "cellist_kernels.hpp"
-#include "storage/storages.hpp"
+#include "storage/cell_scan.hpp"
+#include "storage/storage.hpp"
 
 namespace cellist::detail {
+
+namespace {
+
+/// A number of slots for each cell; one pass.
+class FixedStorage final : public ListStorage {
+public:
+    FixedStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options);
+    void clear() override;
+    bool end_pass() override;
+    bool review(BuildReport& report) override;
+    std::function<Validation()> validate() override;
+    void set_slice(const Slice& slice) override;
+    std::uint64_t nodes_for(std::uint64_t total, std::uint64_t longest,
+                            std::uint64_t cells) const override;
+    void reserve(std::uint64_t total, std::uint64_t longest) override;
+
+private:
+    void reset_passes() override;
+
+    /// Replaces the pool by one for `slots`; `allocate` takes its number of nodes. There are no
+    /// slots if it throws.
+    template <class Allocate>
+    void set_slots(std::uint64_t slots, const Allocate& allocate) {
+        view_.slots = 0;
+        allocate(nodes_with(slots));
+        view_.slots = static_cast<cl_uint>(slots);
+    }
+    [[nodiscard]] std::uint64_t nodes_with(std::uint64_t slots) const;
+
+    CellScan scan_;
+    CellScan::Totals in_slots_;  ///< of the last pass: records in slots, longest list
+};
+
+}  // namespace
 
 FixedStorage::FixedStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options)
     : ListStorage(kernels, shape, options, CELLIST_FIXED,
                   {.node_bytes = kernels.record().size, .head_words_a_cell = 1}),
       scan_(pool_.owner(), shape.cells(), 0) {
+    require_given(options.slots.has_value(), "slots in Storage::fixed");
     std::uint64_t slots = options.slots.value_or(4);
     if (!options.slots && pool_.refusal(nodes_with(slots))) slots = 0;
     allocate_first(nodes_with(slots));
@@ -104,6 +140,11 @@ std::function<Validation()> FixedStorage::validate() {
         const bool sound = adds_up && check->all.hash == expected->counts_hash;
         return Validation{sound ? std::uint64_t{0} : std::uint64_t{1}, 0, lost, counters.late, {}};
     };
+}
+
+std::unique_ptr<ListStorage> make_fixed(RecordKernels& kernels, const Shape& shape,
+                                        const ListsOptions& options) {
+    return std::make_unique<FixedStorage>(kernels, shape, options);
 }
 
 }  // namespace cellist::detail

@@ -1,11 +1,21 @@
 #include <algorithm>
 
 #include "cellist_kernels.hpp"
-#include "storage/storages.hpp"
+#include "storage/storage.hpp"
 
 namespace cellist::detail {
 
 namespace {
+
+/// A head a cell and a pool of nodes with links; one pass.
+class LinkedStorage final : public ListStorage {
+public:
+    LinkedStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options);
+    void clear() override;
+    bool end_pass() override;
+    bool review(BuildReport& report) override;
+    std::function<Validation()> validate() override;
+};
 
 constexpr std::uint64_t default_capacity_nodes = 65536;
 
@@ -17,6 +27,7 @@ LinkedStorage::LinkedStorage(RecordKernels& kernels, const Shape& shape,
                   {.node_bytes = node_layout(kernels.record()).size,
                    .head_words_a_cell = 1,
                    .is_linked = true}) {
+    require_given(options.capacity_nodes.has_value(), "capacity_nodes");
     std::uint64_t capacity =
         options.capacity_nodes.value_or(std::max(shape.cells(), default_capacity_nodes));
     if (!options.capacity_nodes && pool_.refusal(capacity)) capacity = 0;
@@ -72,6 +83,11 @@ std::function<Validation()> LinkedStorage::validate() {
                           expected->stored - std::min<std::uint64_t>(expected->stored, found.nodes),
                           check->counters.sum().late, bad_cell(found)};
     };
+}
+
+std::unique_ptr<ListStorage> make_linked(RecordKernels& kernels, const Shape& shape,
+                                         const ListsOptions& options) {
+    return std::make_unique<LinkedStorage>(kernels, shape, options);
 }
 
 }  // namespace cellist::detail

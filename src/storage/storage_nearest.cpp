@@ -1,11 +1,43 @@
 #include <algorithm>
 
 #include "cellist_kernels.hpp"
-#include "storage/storages.hpp"
+#include "storage/cell_scan.hpp"
+#include "storage/storage.hpp"
 
 namespace cellist::detail {
 
 namespace {
+
+/// A number of slots for each cell, for the records that come first. Passes over the same kernels:
+/// a threshold pass for a word of their keys, and a selection pass that fills the slots. The next
+/// word follows where that leaves a tie.
+class NearestStorage final : public ListStorage {
+public:
+    NearestStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options);
+    void clear() override;
+    void start() override;
+    void begin_pass() override;
+    bool end_pass() override;
+    bool review(BuildReport& report) override;
+    std::function<Validation()> validate() override;
+    std::uint64_t nodes_for(std::uint64_t total, std::uint64_t longest,
+                            std::uint64_t cells) const override;
+    void reserve(std::uint64_t, std::uint64_t) override {}
+
+private:
+    void reset_passes() override;
+
+    void prepare_threshold_pass();
+    void run(const char* name, const Memory* selection = nullptr);
+    [[nodiscard]] std::uint64_t row(std::uint64_t number) const { return number * shape_.cells(); }
+
+    CellScan scan_;
+    bool selecting_ = false;   ///< the next pass fills the slots
+    Counters threshold_pass_;  ///< its counters
+    CellScan::Totals kept_;
+    cellist_selection selection_{};
+    Memory selection_memory_;
+};
 
 /// Which member of a record the key is. Throws Error for the key of another record.
 cl_uint member_index(const RecordType& record, const NearestKey& key) {
@@ -170,6 +202,11 @@ std::function<Validation()> NearestStorage::validate() {
             check->counters.sum().late,
             {}};
     };
+}
+
+std::unique_ptr<ListStorage> make_nearest(RecordKernels& kernels, const Shape& shape,
+                                          const ListsOptions& options) {
+    return std::make_unique<NearestStorage>(kernels, shape, options);
 }
 
 }  // namespace cellist::detail

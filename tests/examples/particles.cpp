@@ -28,7 +28,7 @@ Scene scene_of(Box box, float radius, std::vector<cl_float4> points) {
 }
 
 void require_all_found(const Scene& scene) {
-    for (const Storage storage : {Storage::linked, Storage::counted, Storage::fixed})
+    for (const Storage storage : all_storages)
         for (const int cells : {1, 2, 3}) {
             INFO("storage " << static_cast<int>(storage) << ", cells " << cells);
             particles::NeighbourSearch search(device(), scene, storage, cells);

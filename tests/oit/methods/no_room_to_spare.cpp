@@ -49,7 +49,7 @@ std::uint64_t bytes_of_sort(oit::FragmentSource& source) {
 TEST_CASE("frames after the first need no more memory than the first") {
     const oit::Scene scene = oit::scene_of(torus_knot(2, 3, 200, 12), 0.3F);
     const oit::Frame frame{.scene = scene, .views = {support::frame_unit_sphere({30, 10}, 60, 45)}};
-    for (const Storage storage : {Storage::linked, Storage::counted, Storage::fixed}) {
+    for (const Storage storage : cellist::all_storages) {
         INFO("storage " << static_cast<int>(storage));
         oit::FragmentSource source(device(), frame);
         // Small, so that growing to what the frame needs is more than the lists begin with.
