@@ -12,11 +12,11 @@
 
 #include "command_line.hpp"
 #include "files.hpp"
+#include "grid/rays.hpp"
 #include "grid/triangle_grid.hpp"
 #include "image.hpp"
 #include "mesh.hpp"
 #include "picture.hpp"
-#include "queries.hpp"
 #include "reference.hpp"
 #include "scene.hpp"
 #include "segments.hpp"
@@ -108,13 +108,15 @@ bool run(const Options& options) {
     triangle_grid::add_flat_triangles(triangles);
 
     grid::TriangleGrid grid(device, triangles, cells, options.storage);
-    triangle_grid::Queries queries(device, grid, segments);
+    grid::Rays rays(device, grid);
+    const cellist::Buffer<grid::GridSegment> asked(device, triangle_grid::to_device(segments));
+    cellist::Buffer<cl_uint> any(device, segments.size());
     grid.build();  // lets the pool grow
-    queries.ask();
+    rays.any_hits(asked, any);
     cellist::BuildReport report;
     const double build_ms = support::measure_ms(device, [&] { report = grid.build(); });
-    const double ask_ms = support::measure_ms(device, [&] { queries.ask(); });
-    const std::vector<cl_uint> hits = queries.hits();
+    const double ask_ms = support::measure_ms(device, [&] { rays.any_hits(asked, any); });
+    const std::vector<cl_uint> hits = any.download();
 
     std::fprintf(screen, "device      %s\n", device.info().name.c_str());
     std::fprintf(screen, "triangles   %zu, in %s cells, %s: %llu entries, %.1f MB\n",

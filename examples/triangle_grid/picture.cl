@@ -43,7 +43,7 @@ static Surface find_surface(GRID_SCENE(scene), global const float4* normals, con
     Surface surface;
     surface.seen = 0;
     float at;
-    const uint number = grid_first_hit(GRID_PASS(scene), eye, to, &at);
+    const uint number = grid_closest_hit(GRID_PASS(scene), eye, to, &at);
     const float floor_at = (camera.floor - eye.y) / (FAR_AWAY * direction.y);
     if (number != GRID_NO_TRIANGLE && !(floor_at > 0.0f && floor_at < at)) {
         const GridTriangle triangle = scene_triangles[number];

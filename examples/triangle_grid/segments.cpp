@@ -97,6 +97,14 @@ std::vector<Segment> make_segments(std::size_t count, const grid::GridCells& cel
     return segments;
 }
 
+std::vector<grid::GridSegment> to_device(std::span<const Segment> segments) {
+    std::vector<grid::GridSegment> result;
+    result.reserve(segments.size());
+    for (const Segment& segment : segments)
+        result.push_back({glm::vec4(segment.from, 0), glm::vec4(segment.to, 0)});
+    return result;
+}
+
 void add_flat_triangles(std::vector<grid::GridTriangle>& triangles) {
     const std::size_t count = std::min<std::size_t>(triangles.size(), 8);
     for (std::size_t i = 0; i < count; ++i) {

@@ -9,7 +9,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "grid/triangle_grid.hpp"
+#include "grid/rays.hpp"
 
 namespace triangle_grid {
 
@@ -32,6 +32,9 @@ inline constexpr std::array<std::string_view, 9> kinds{"between random points",
 [[nodiscard]] std::vector<Segment> make_segments(std::size_t count, const grid::GridCells& cells,
                                                  std::span<const grid::GridTriangle> triangles,
                                                  std::uint32_t seed);
+
+/// The same segments as grid::Rays takes them.
+[[nodiscard]] std::vector<grid::GridSegment> to_device(std::span<const Segment> segments);
 
 /// Triangles without area: points, and corners in a line. Nothing may come of them.
 void add_flat_triangles(std::vector<grid::GridTriangle>& triangles);

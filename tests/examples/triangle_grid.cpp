@@ -8,7 +8,6 @@
 
 #include <cellist/cellist.hpp>
 
-#include "queries.hpp"
 #include "reference.hpp"
 #include "scene.hpp"
 #include "segments.hpp"
@@ -27,9 +26,12 @@ std::vector<cl_uint> ask(const Triangles& triangles, const grid::GridCells& cell
     grid::TriangleGrid grid(device(), triangles, cells, storage);
     grid.build();
     REQUIRE(grid.entries().validate().ok());
-    triangle_grid::Queries queries(device(), grid, segments);
-    queries.ask();
-    return queries.hits();
+    grid::Rays rays(device(), grid);
+    const Buffer<grid::GridSegment> asked(device(), triangle_grid::to_device(segments));
+    Buffer<cl_uint> any(device(), segments.size());
+    any.fill(7);
+    rays.any_hits(asked, any);
+    return any.download();
 }
 
 void require_same(const Triangles& triangles, const grid::GridCells& cells,

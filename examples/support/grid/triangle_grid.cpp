@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <glm/common.hpp>
 
@@ -12,6 +13,12 @@
 namespace grid {
 namespace {
 
+/// At most as many triangles at each end of an axis may lie outside of the grid.
+constexpr std::size_t outliers_max = 32;
+
+/// Large triangles are shared out while there is room for these parts.
+constexpr std::size_t parts_max = 65536;
+
 bool is_finite(const GridTriangle& triangle) {
     for (const glm::vec3& corner : {triangle.a, triangle.b, triangle.c})
         for (int k = 0; k < 3; ++k)
@@ -19,9 +26,40 @@ bool is_finite(const GridTriangle& triangle) {
     return true;
 }
 
-cellist::Shape shape_of(const GridCells& cells) {
-    const auto extent = [&](int k) { return static_cast<std::uint64_t>(cells.extent[k]); };
-    return {extent(0), extent(1), extent(2)};
+/// How many cubes of 2^bits cells along each axis the grid has.
+std::uint64_t cubes_of(const GridCells& cells, int bits) {
+    std::uint64_t cubes = 1;
+    for (const cl_int extent : cells.extent)
+        cubes *= (static_cast<std::uint64_t>(extent) + (1U << bits) - 1) >> bits;
+    return cubes;
+}
+
+/// Cells along the longest side that suit so many triangles. Meshes are surfaces: with twice as
+/// many cells along each axis, the surface touches four times as many cells.
+int suitable_longest(std::size_t triangles) {
+    const auto cells = static_cast<int>(std::sqrt(static_cast<double>(triangles)) / 2);
+    return std::clamp(cells, 4, GRID_EXTENT_MAX);
+}
+
+/// The ends of the triangles along an axis, without the outliers.
+struct Ends {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -std::numeric_limits<double>::infinity();
+};
+
+Ends ends_along(std::vector<float>& lows, std::vector<float>& highs) {
+    if (lows.empty()) return {0, 0};
+    const auto at = [](std::vector<float>& values, std::size_t rank) -> double {
+        std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rank),
+                         values.end());
+        return values[rank];
+    };
+    const std::size_t count = lows.size();
+    // A thousandth, so that small meshes are not cut.
+    const std::size_t left_out = std::min(outliers_max, count / 1000);
+    const Ends all{at(lows, 0), at(highs, count - 1)};
+    const Ends most{at(lows, left_out), at(highs, count - 1 - left_out)};
+    return all.high - all.low > 2 * (most.high - most.low) ? most : all;
 }
 
 std::string join(std::initializer_list<std::string_view> parts) {
@@ -35,19 +73,27 @@ constexpr std::string_view includes = "#include <cellist/lists.clh>\n#include <c
 }  // namespace
 
 GridCells cells_around(std::span<const GridTriangle> triangles, int longest) {
-    if (longest < 1 || longest > GRID_EXTENT_MAX)
+    if (longest < 0 || longest > GRID_EXTENT_MAX)
         throw support::InputError("a grid of " + std::to_string(longest) +
                                   " cells: expected 1 to " + std::to_string(GRID_EXTENT_MAX));
-    glm::dvec3 low(std::numeric_limits<double>::infinity());
-    glm::dvec3 high = -low;
-    for (const GridTriangle& triangle : triangles) {
-        if (!is_finite(triangle)) continue;
-        for (const glm::vec3& corner : {triangle.a, triangle.b, triangle.c}) {
-            low = glm::min(low, glm::dvec3(corner));
-            high = glm::max(high, glm::dvec3(corner));
+    glm::dvec3 low(0), high(0);
+    std::size_t count = 0;
+    for (int k = 0; k < 3; ++k) {
+        std::vector<float> lows, highs;
+        lows.reserve(triangles.size());
+        highs.reserve(triangles.size());
+        for (const GridTriangle& triangle : triangles) {
+            if (!is_finite(triangle)) continue;
+            const auto [least, most] = std::minmax({triangle.a[k], triangle.b[k], triangle.c[k]});
+            lows.push_back(least);
+            highs.push_back(most);
         }
+        count = lows.size();
+        const Ends ends = ends_along(lows, highs);
+        low[k] = ends.low;
+        high[k] = ends.high;
     }
-    if (!(low.x <= high.x)) low = high = glm::dvec3(0);
+    if (longest == 0) longest = suitable_longest(count);
     const glm::dvec3 size = high - low;
     const double side = std::max({size.x, size.y, size.z});
     const glm::dvec3 farthest = glm::max(glm::abs(low), glm::abs(high));
@@ -74,16 +120,43 @@ double cell_side(const GridCells& cells) {
 TriangleGrid::TriangleGrid(const cellist::Device& device, std::span<const GridTriangle> triangles,
                            const GridCells& cells, cellist::Storage storage)
     : cells_(cells),
+      bricks_(cubes_of(cells, GRID_BRICK_BITS)),
       triangles_(device, triangles),
-      entries_(device, shape_of(cells), {.storage = storage}),
-      insert_(device,
-              cellist::Source{.text = join({includes, kernels::cells_h, kernels::insert_cl}),
-                              .file_name = "insert.cl"},
-              "grid_insert", entries_, cellist::type<GridCells>, cellist::type<GridTriangle>) {}
+      corners_(device, 3 * triangles.size()),
+      occupancy_(device, bricks_ + bricks_ / sizeof(cl_ulong) + 1),
+      parts_groups_(std::size_t{device.info().compute_units} * 16),
+      parts_(device, parts_max),
+      part_count_(device, 1),
+      entries_(device, {bricks_ * GRID_BRICK_CELLS + 1}, {.storage = storage}),
+      insert_(kernel(device, "grid_insert")),
+      insert_parts_(kernel(device, "grid_insert_parts")),
+      find_occupied_(kernel(device, "grid_find_occupied")),
+      find_empty_(kernel(device, "grid_find_empty")) {}
+
+cellist::Kernel TriangleGrid::kernel(const cellist::Device& device, const char* name) const {
+    return {device,
+            cellist::Source{.text = with_queries(kernels::insert_cl), .file_name = "insert.cl"},
+            name,
+            entries_,
+            cellist::type<GridCells>,
+            cellist::type<GridTriangle>,
+            cellist::type<GridPart>};
+}
 
 cellist::BuildReport TriangleGrid::build() {
     const auto count = static_cast<cl_uint>(triangles_.size());
-    return entries_.build(insert_, cellist::Range::padded(count, 64), cells_, triangles_, count);
+    const auto room = static_cast<cl_uint>(parts_.size());
+    const cellist::BuildReport report = entries_.build([&] {
+        part_count_.fill(0);
+        insert_.run(cellist::Range::padded(count, 64), entries_, cells_, triangles_, count,
+                    corners_, parts_, room, part_count_);
+        insert_parts_.run(cellist::Range::padded(parts_groups_ * 64, 64), entries_, cells_, triangles_, parts_, room,
+                          part_count_);
+    });
+    find_occupied_.run(cellist::Range::padded(bricks_, 64), entries_, static_cast<cl_uint>(bricks_),
+                       occupancy_);
+    find_empty_.run(cellist::Range::padded(cubes_of(cells_, GRID_BLOCK_BITS), 64), cells_, occupancy_);
+    return report;
 }
 
 std::string with_queries(std::string_view source) {

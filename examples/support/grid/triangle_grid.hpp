@@ -33,43 +33,71 @@ struct GridCells {
 };
 CELLIST_STRUCT(GridCells, origin, unit, cells_per_unit, extent);
 
+/// A part of a large triangle, whose cells several work-groups share.
+struct GridPart {
+    cl_uint triangle, part, parts;
+};
+CELLIST_STRUCT(GridPart, triangle, part, parts);
+
 /// The side of a cell.
 [[nodiscard]] double cell_side(const GridCells& cells);
 
-/// Cells around the bounding box of the triangles, `longest` along its longest side. Triangles that
-/// are not finite do not count. Throws InputError unless 1 <= longest <= GRID_EXTENT_MAX.
+/// Cells around the bounding box of the triangles, `longest` along its longest side; for 0, as many
+/// as suit the number of triangles (see grid.md). Triangles that are not finite do not count, and
+/// neither do up to 32 at each end of an axis, if their places more than double the box: they are
+/// found all the same. Throws InputError unless 0 <= longest <= GRID_EXTENT_MAX.
 [[nodiscard]] GridCells cells_around(std::span<const GridTriangle> triangles, int longest);
 
 /// Triangles in the cells of a 3D grid, for queries with segments (Yang, Hensley, Gruen, Thibieroz:
-/// "Real-Time Concurrent Linked List Construction on the GPU", EGSR 2010, section 4.2).
+/// "Real-Time Concurrent Linked List Construction on the GPU", EGSR 2010, section 4.2). Triangles
+/// may lie anywhere: those that reach out of the grid are in a list of their own, which slows down
+/// segments that leave the grid.
 ///
-/// Kernels use it through query.clh:
+/// rays.hpp traces many segments. Kernels can also use the grid themselves, through query.clh:
 ///
 ///     cellist::Kernel shade(device, grid::with_queries(source), "shade", triangles.entries(),
 ///                           cellist::type<grid::GridCells>, cellist::type<grid::GridTriangle>);
-///     shade.run(range, triangles.entries(), triangles.cells(), triangles.triangles(), ...);
+///     triangles.run(shade, range, ...);
 class TriangleGrid {
 public:
-    /// Uploads the triangles and builds the kernel. The grid is empty until build().
+    /// Uploads the triangles and builds the kernels. The grid is empty until build(). Throws
+    /// MemoryError if the device has no room for the cells.
     TriangleGrid(const cellist::Device& device, std::span<const GridTriangle> triangles,
                  const GridCells& cells, cellist::Storage storage = cellist::Storage::counted);
 
-    /// Puts every triangle into every cell that its bounding box touches. Blocks. Triangles that
-    /// are not finite are counted as rejected.
+    /// Puts every triangle into the list of each cell that it overlaps. Blocks. Triangles that are
+    /// not finite are counted as rejected. Kernels may write other triangles to triangles() before.
     cellist::BuildReport build();
+
+    /// Enqueues a kernel whose first parameter is GRID_SCENE(name). Does not block.
+    template <class... Args>
+    cl::Event run(cellist::Kernel& kernel, const cellist::Range& range, const Args&... args) const {
+        return kernel.run(range, entries_, cells_, triangles_, corners_, occupancy_, args...);
+    }
 
     [[nodiscard]] const cellist::Lists<GridEntry>& entries() const { return entries_; }
     [[nodiscard]] const GridCells& cells() const { return cells_; }
     [[nodiscard]] const cellist::Buffer<GridTriangle>& triangles() const { return triangles_; }
 
 private:
+    [[nodiscard]] cellist::Kernel kernel(const cellist::Device& device, const char* name) const;
+
     GridCells cells_;
+    std::uint64_t bricks_;
     cellist::Buffer<GridTriangle> triangles_;
+    cellist::Buffer<cl_float4> corners_;
+    cellist::Buffer<cl_ulong> occupancy_;
+    std::size_t parts_groups_;
+    cellist::Buffer<GridPart> parts_;
+    cellist::Buffer<cl_uint> part_count_;
     cellist::Lists<GridEntry> entries_;
     cellist::Kernel insert_;
+    cellist::Kernel insert_parts_;
+    cellist::Kernel find_occupied_;
+    cellist::Kernel find_empty_;
 };
 
-/// A kernel's source behind everything that query.clh defines.
+/// A kernel's source after everything that query.clh defines.
 [[nodiscard]] std::string with_queries(std::string_view source);
 
 }  // namespace grid

@@ -1,0 +1,67 @@
+#include "grid/rays.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "grid_kernels.hpp"
+
+namespace grid {
+namespace {
+
+cellist::Kernel kernel(const cellist::Device& device, const TriangleGrid& triangles,
+                       const char* name) {
+    return {device,
+            cellist::Source{.text = with_queries(kernels::rays_cl), .file_name = "rays.cl"},
+            name,
+            triangles.entries(),
+            cellist::type<GridCells>,
+            cellist::type<GridTriangle>,
+            cellist::type<GridHit>,
+            cellist::type<GridRayCounters>};
+}
+
+/// As many work-items as a device runs at once: each takes segments until there are none left.
+cellist::Range whole_device(const cellist::DeviceInfo& device) {
+    const std::size_t group = device.one_thread_per_work_group ? 1 : 64;
+    const std::size_t groups =
+        std::size_t{device.compute_units} * (device.one_thread_per_work_group ? 1 : 16);
+    return cellist::Range::padded(groups * group, group);
+}
+
+}  // namespace
+
+Rays::Rays(const cellist::Device& device, const TriangleGrid& triangles)
+    : device_(device),
+      triangles_(triangles),
+      range_(whole_device(device.info())),
+      counters_(device, 1),
+      undecided_(device, 0),
+      any_(kernel(device, triangles, "grid_any_hits")),
+      any_exactly_(kernel(device, triangles, "grid_any_hits_exactly")),
+      closest_(kernel(device, triangles, "grid_closest_hits")),
+      closest_exactly_(kernel(device, triangles, "grid_closest_hits_exactly")) {}
+
+template <class Result>
+void Rays::trace(cellist::Kernel& quickly, cellist::Kernel& exactly,
+                 const cellist::Buffer<GridSegment>& segments, cellist::Buffer<Result>& results) {
+    if (results.size() < segments.size())
+        throw cellist::Error("results of " + std::to_string(results.size()) +
+                             " segments have no room for " + std::to_string(segments.size()));
+    if (undecided_.size() < segments.size())
+        undecided_ = cellist::Buffer<cl_uint>(device_, segments.size());
+    counters_.fill({});
+    triangles_.run(quickly, range_, segments.cl(), static_cast<cl_uint>(segments.size()), results,
+                   counters_, undecided_);
+    triangles_.run(exactly, range_, segments.cl(), results, counters_, undecided_);
+}
+
+void Rays::any_hits(const cellist::Buffer<GridSegment>& segments, cellist::Buffer<cl_uint>& any) {
+    trace(any_, any_exactly_, segments, any);
+}
+
+void Rays::closest_hits(const cellist::Buffer<GridSegment>& segments,
+                        cellist::Buffer<GridHit>& closest) {
+    trace(closest_, closest_exactly_, segments, closest);
+}
+
+}  // namespace grid
