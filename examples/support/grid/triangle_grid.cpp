@@ -34,11 +34,17 @@ std::uint64_t cubes_of(const GridCells& cells, int bits) {
     return cubes;
 }
 
-/// Cells along the longest side that suit so many triangles. Meshes are surfaces: with twice as
-/// many cells along each axis, the surface touches four times as many cells.
-int suitable_longest(std::size_t triangles) {
-    const auto cells = static_cast<int>(std::sqrt(static_cast<double>(triangles)) / 2);
-    return std::clamp(cells, 4, GRID_EXTENT_MAX);
+/// Cells along the longest side of a box for so many triangles: a constant number of cells per
+/// triangle (Wald, Ize, Kensler, Knoll, Parker: "Ray Tracing Animated Scenes using Coherent Grid
+/// Traversal", SIGGRAPH 2006). A flat box counts as a slab.
+int suitable_longest(const glm::dvec3& size, std::size_t triangles) {
+    constexpr double cells_per_triangle = 32;
+    const double longest = std::max({size.x, size.y, size.z});
+    if (!(longest > 0)) return 1;
+    const glm::dvec3 sides = glm::max(size / longest, glm::dvec3(1.0 / 64));
+    const double volume = sides.x * sides.y * sides.z;
+    const double cells = std::cbrt(cells_per_triangle * static_cast<double>(triangles) / volume);
+    return static_cast<int>(std::clamp(cells, 4.0, double{GRID_EXTENT_MAX}));
 }
 
 /// The ends of the triangles along an axis, without the outliers.
@@ -93,8 +99,8 @@ GridCells cells_around(std::span<const GridTriangle> triangles, int longest) {
         low[k] = ends.low;
         high[k] = ends.high;
     }
-    if (longest == 0) longest = suitable_longest(count);
     const glm::dvec3 size = high - low;
+    if (longest == 0) longest = suitable_longest(size, count);
     const double side = std::max({size.x, size.y, size.z});
     const glm::dvec3 farthest = glm::max(glm::abs(low), glm::abs(high));
     // Scales coordinates to 1 or less, except those beyond 2^100.

@@ -42,10 +42,10 @@ CELLIST_STRUCT(GridPart, triangle, part, parts);
 /// The side of a cell.
 [[nodiscard]] double cell_side(const GridCells& cells);
 
-/// Cells around the bounding box of the triangles, `longest` along its longest side; for 0, as many
-/// as suit the number of triangles (see grid.md). Triangles that are not finite do not count, and
-/// neither do up to 32 at each end of an axis, if their places more than double the box: they are
-/// found all the same. Throws InputError unless 0 <= longest <= GRID_EXTENT_MAX.
+/// Cells around the bounding box of the triangles, `longest` along its longest side; for 0, 32
+/// cells for each triangle. Triangles that are not finite do not count. Neither do outliers: up to
+/// 32 triangles at each end of an axis, but no more than a thousandth, if the box is less than half
+/// as long without them. Throws InputError unless 0 <= longest <= GRID_EXTENT_MAX.
 [[nodiscard]] GridCells cells_around(std::span<const GridTriangle> triangles, int longest);
 
 /// Triangles in the cells of a 3D grid, for queries with segments (Yang, Hensley, Gruen, Thibieroz:
