@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include <glm/vec3.hpp>
+
 #include "raster/view.hpp"
 
 namespace support {
@@ -20,5 +22,15 @@ struct Orbit {
 /// the middle of the image.
 [[nodiscard]] std::vector<raster::View> frame_unit_sphere(const Orbit& orbit, int width, int height,
                                                           double eye_separation);
+
+/// The perspective view of a camera at `eye` that looks at `target`, with y up; along y, z is up.
+/// The field of view is along the shorter side.
+[[nodiscard]] raster::View look_at(const glm::dvec3& eye, const glm::dvec3& target,
+                                   double field_degrees, int width, int height);
+
+/// The view along parallel lines from `eye` towards `target`, of a square around the line between
+/// them with this side. Depths of fragments are 1.
+[[nodiscard]] raster::View look_along(const glm::dvec3& eye, const glm::dvec3& target, double side,
+                                      int pixels);
 
 }  // namespace support

@@ -112,10 +112,10 @@ bool run(const Options& options) {
     const cellist::Buffer<grid::GridSegment> asked(device, triangle_grid::to_device(segments));
     cellist::Buffer<cl_uint> any(device, segments.size());
     grid.build();  // lets the pool grow
-    rays.any_hits(asked, any);
+    rays.any_hits(asked, asked.size(), any);
     cellist::BuildReport report;
     const double build_ms = support::measure_ms(device, [&] { report = grid.build(); });
-    const double ask_ms = support::measure_ms(device, [&] { rays.any_hits(asked, any); });
+    const double ask_ms = support::measure_ms(device, [&] { rays.any_hits(asked, asked.size(), any); });
     const std::vector<cl_uint> hits = any.download();
 
     std::fprintf(screen, "device      %s\n", device.info().name.c_str());

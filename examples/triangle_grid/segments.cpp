@@ -101,7 +101,8 @@ std::vector<grid::GridSegment> to_device(std::span<const Segment> segments) {
     std::vector<grid::GridSegment> result;
     result.reserve(segments.size());
     for (const Segment& segment : segments)
-        result.push_back({glm::vec4(segment.from, 0), glm::vec4(segment.to, 0)});
+        result.push_back({{{segment.from.x, segment.from.y, segment.from.z, 0}},
+                          {{segment.to.x, segment.to.y, segment.to.z, 0}}});
     return result;
 }
 

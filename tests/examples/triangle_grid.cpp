@@ -30,7 +30,7 @@ std::vector<cl_uint> ask(const Triangles& triangles, const grid::GridCells& cell
     const Buffer<grid::GridSegment> asked(device(), triangle_grid::to_device(segments));
     Buffer<cl_uint> any(device(), segments.size());
     any.fill(7);
-    rays.any_hits(asked, any);
+    rays.any_hits(asked, asked.size(), any);
     return any.download();
 }
 

@@ -43,25 +43,28 @@ Rays::Rays(const cellist::Device& device, const TriangleGrid& triangles)
 
 template <class Result>
 void Rays::trace(cellist::Kernel& quickly, cellist::Kernel& exactly,
-                 const cellist::Buffer<GridSegment>& segments, cellist::Buffer<Result>& results) {
-    if (results.size() < segments.size())
-        throw cellist::Error("results of " + std::to_string(results.size()) +
-                             " segments have no room for " + std::to_string(segments.size()));
-    if (undecided_.size() < segments.size())
-        undecided_ = cellist::Buffer<cl_uint>(device_, segments.size());
+                 const cellist::Buffer<GridSegment>& segments, std::size_t count,
+                 cellist::Buffer<Result>& results) {
+    for (const std::size_t size : {segments.size(), results.size()})
+        if (size < count)
+            throw cellist::Error("a buffer of " + std::to_string(size) +
+                                 " elements is too short for " + std::to_string(count) +
+                                 " segments");
+    if (undecided_.size() < count) undecided_ = cellist::Buffer<cl_uint>(device_, count);
     counters_.fill({});
-    triangles_.run(quickly, range_, segments.cl(), static_cast<cl_uint>(segments.size()), results,
-                   counters_, undecided_);
+    triangles_.run(quickly, range_, segments.cl(), static_cast<cl_uint>(count), results, counters_,
+                   undecided_);
     triangles_.run(exactly, range_, segments.cl(), results, counters_, undecided_);
 }
 
-void Rays::any_hits(const cellist::Buffer<GridSegment>& segments, cellist::Buffer<cl_uint>& any) {
-    trace(any_, any_exactly_, segments, any);
+void Rays::any_hits(const cellist::Buffer<GridSegment>& segments, std::size_t count,
+                    cellist::Buffer<cl_uint>& any) {
+    trace(any_, any_exactly_, segments, count, any);
 }
 
-void Rays::closest_hits(const cellist::Buffer<GridSegment>& segments,
+void Rays::closest_hits(const cellist::Buffer<GridSegment>& segments, std::size_t count,
                         cellist::Buffer<GridHit>& closest) {
-    trace(closest_, closest_exactly_, segments, closest);
+    trace(closest_, closest_exactly_, segments, count, closest);
 }
 
 }  // namespace grid

@@ -10,7 +10,7 @@ namespace grid {
 
 /// The ends of a segment; w is unused.
 struct GridSegment {
-    glm::vec4 from, to;
+    cl_float4 from, to;
 };
 CELLIST_STRUCT(GridSegment, from, to);
 
@@ -39,21 +39,27 @@ public:
     /// Builds the kernels. The device and the grid must outlive this.
     Rays(const cellist::Device& device, const TriangleGrid& triangles);
 
-    /// Writes to `any` whether each segment meets a triangle: 1 or 0. Throws Error if `any` is too
-    /// short. Does not block.
-    void any_hits(const cellist::Buffer<GridSegment>& segments, cellist::Buffer<cl_uint>& any);
+    /// Writes to `any` whether each of the first `count` segments meets a triangle: 1 or 0. Throws
+    /// Error if a buffer is too short. Does not block.
+    void any_hits(const cellist::Buffer<GridSegment>& segments, std::size_t count,
+                  cellist::Buffer<cl_uint>& any);
     /// Writes what each segment meets first; among triangles at the same distance, the one with the
     /// lowest number. Otherwise as any_hits().
-    void closest_hits(const cellist::Buffer<GridSegment>& segments,
+    void closest_hits(const cellist::Buffer<GridSegment>& segments, std::size_t count,
                       cellist::Buffer<GridHit>& closest);
 
     /// Segments of the last call with an end that is not finite; they meet nothing. Blocks.
     [[nodiscard]] std::uint32_t invalid() const { return counters_.download()[0].invalid; }
 
+    [[nodiscard]] std::uint64_t device_bytes() const {
+        return counters_.size() * sizeof(GridRayCounters) + undecided_.size() * sizeof(cl_uint);
+    }
+
 private:
     template <class Result>
     void trace(cellist::Kernel& quickly, cellist::Kernel& exactly,
-               const cellist::Buffer<GridSegment>& segments, cellist::Buffer<Result>& results);
+               const cellist::Buffer<GridSegment>& segments, std::size_t count,
+               cellist::Buffer<Result>& results);
 
     const cellist::Device& device_;
     const TriangleGrid& triangles_;

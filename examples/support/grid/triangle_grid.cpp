@@ -165,6 +165,12 @@ cellist::BuildReport TriangleGrid::build() {
     return report;
 }
 
+std::uint64_t TriangleGrid::device_bytes() const {
+    return entries_.pool_bytes() + triangles_.size() * sizeof(GridTriangle) +
+           corners_.size() * sizeof(cl_float4) + occupancy_.size() * sizeof(cl_ulong) +
+           parts_.size() * sizeof(GridPart);
+}
+
 std::string with_queries(std::string_view source) {
     return join({includes, kernels::cells_h, kernels::segment_clh, kernels::walk_clh,
                  kernels::query_clh, source});

@@ -75,6 +75,8 @@ public:
         return kernel.run(range, entries_, cells_, triangles_, corners_, occupancy_, args...);
     }
 
+    /// Device memory of the grid and the triangles.
+    [[nodiscard]] std::uint64_t device_bytes() const;
     [[nodiscard]] const cellist::Lists<GridEntry>& entries() const { return entries_; }
     [[nodiscard]] const GridCells& cells() const { return cells_; }
     [[nodiscard]] const cellist::Buffer<GridTriangle>& triangles() const { return triangles_; }

@@ -1,0 +1,24 @@
+// Pass: the surface of the fragment that has the least key.
+#define RASTER_TARGET SURFACES_TARGET
+#define RASTER_TARGET_PASS SURFACES_TARGET_PASS
+
+static inline void raster_emit(RASTER_TARGET, const View* view,
+                               global const RasterInstance* instance, uint piece,
+                               const RasterFragment* covered) {
+    const int pixel = covered->y * view->width + covered->x;
+    const PlacedMesh placed = placed_meshes[instance->tag];
+    const float3 position = fragment_position(placed, covered, mesh_positions);
+    if (fragment_key(position, covered, piece, from) != keys[pixel]) return;
+    float3 n = 0.0f;
+    for (int i = 0; i < 3; ++i) n += covered->weight[i] * vload3(covered->corner[i], mesh_normals);
+    n = (float3)(dot(vload3(0, instance->normal_x), n), dot(vload3(0, instance->normal_y), n),
+                 dot(vload3(0, instance->normal_z), n));
+    // Both sides are lit: the normal points to the viewer.
+    const float3 seen_along = from.is_spot ? position - from.position.xyz : from.axis.xyz;
+    if (dot(n, seen_along) > 0.0f) n = -n;
+    Surface surface;
+    surface.position = (float4)(position, 1.0f);
+    surface.normal = (float4)(n * rsqrt(fmax(dot(n, n), 1e-30f)), 0.0f);
+    surface.albedo = placed.albedo;
+    surfaces[pixel] = surface;
+}
