@@ -31,7 +31,7 @@ OIT_DEFINE_NODE(7);
 #undef OIT_DEFINE_NODE
 
 /// The device resolves two depths if they differ by more than this part of the greater one. The
-/// device's depth is off by a factor of at most 1 +- 8 * 2^-24 (see triangle.clh); two of them by
+/// device's depth is off by a factor of at most 1 +- 8 * 2^-24 (see draw.clh); two of them by
 /// twice that.
 inline constexpr double depth_resolution = 16.0 / (1 << 24);
 

@@ -75,7 +75,7 @@ std::vector<cl_uint> indices_of(std::span<const support::Mesh* const> meshes) {
 }
 
 std::string joined(std::initializer_list<std::string_view> parts) {
-    std::string text = "#include <cellist/lists.clh>\n";
+    std::string text = "#include <cellist/lists.clh>\n#pragma OPENCL FP_CONTRACT OFF\n";
     for (const std::string_view part : parts) text.append(part).append("\n");
     return text;
 }
@@ -91,9 +91,8 @@ std::string defines(const cellist::Device& device, const Sampling& sampling) {
 }
 
 cellist::Source setup_source(const cellist::Device& device, const Sampling& sampling) {
-    return {.text = joined({defines(device, sampling), "#define RASTER_WIDE",
-                            kernels::definitions_h, kernels::transform_cl, kernels::triangle_clh,
-                            kernels::clip_clh, kernels::bin_cl}),
+    return {.text = joined({defines(device, sampling), kernels::definitions_h,
+                            kernels::triangle_clh, kernels::setup_cl}),
             .file_name = "raster_setup.cl",
             .options = build_options(device)};
 }
@@ -143,7 +142,7 @@ cellist::Range bin_range(const cellist::Device& device, std::size_t batches) {
     return cellist::Range::padded(batches * items, items);
 }
 
-cellist::Range block_groups(const cellist::Device& device) {
+cellist::Range block_range(const cellist::Device& device) {
     const Tuning tuning = tuning_for(device);
     const std::size_t items = tuning.teams * tuning.lanes;
     cellist::Range range(device.info().compute_units * tuning.groups * items);
@@ -185,16 +184,11 @@ RasterInstance instance_of(const Placed& placed, const View& view, cl_uint eye) 
     return instance;
 }
 
-bool divides_exactly(const cellist::Device& device) {
-    const auto devices = device.context().getInfo<CL_CONTEXT_DEVICES>();
-    for (const cl::Device& one : devices)
-        if ((one.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) == 0)
-            return false;
-    return true;
-}
-
 std::string build_options(const cellist::Device& device) {
-    return divides_exactly(device) ? "-cl-fp32-correctly-rounded-divide-sqrt" : "";
+    for (const cl::Device& one : device.context().getInfo<CL_CONTEXT_DEVICES>())
+        if ((one.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) == 0)
+            return "";
+    return "-cl-fp32-correctly-rounded-divide-sqrt";
 }
 
 SetupKernels::SetupKernels(const cellist::Device& device, const Sampling& sampling)
@@ -205,7 +199,7 @@ cellist::Source Pass::pass_source(const cellist::Device& device, const Sampling&
                                   std::string_view source, const std::string& name,
                                   EdgeBits edge_bits) {
     return {
-        .text = joined({"#pragma OPENCL FP_CONTRACT OFF", defines(device, sampling),
+        .text = joined({defines(device, sampling),
                         edge_bits == EdgeBits::wide ? "#define RASTER_WIDE" : "",
                         kernels::definitions_h, kernels::triangle_clh, source, kernels::draw_clh}),
         .file_name = name,
@@ -244,7 +238,8 @@ Projection::Projection(const cellist::Device& device, SetupKernels& kernels,
       views_(device, views),
       instances_(device, views.size() * placed.size()),
       batches_(device, vertex_batches(geometry, placed, views.size())),
-      vertices_(device, projected_vertices(geometry, placed, views.size())) {
+      vertices_(device, projected_vertices(geometry, placed, views.size())),
+      vertex_range_(batches_range(batches_.size())) {
     for (const Placed& one : placed) meshes_.push_back(one.mesh);
     move(placed, views);
 }
@@ -261,11 +256,6 @@ void Projection::move(std::span<const Placed> placed, std::span<const View> view
         }
     instances_.upload_async(instances).wait();
     views_.upload_async(views).wait();
-}
-
-void Projection::transform() {
-    kernels_.transform.run(batches_range(batches_.size()), views_, instances_, batches_,
-                           geometry_.positions(), vertices_);
 }
 
 std::uint64_t Projection::device_bytes() const {
@@ -291,21 +281,13 @@ Triangles::Triangles(const cellist::Device& device, const Projection& projection
                      std::span<const std::size_t> chosen)
     : device_(device),
       projection_(projection),
-      groups_(block_groups(device)),
       batches_(device, in_order_for(device, projection.triangle_batches(chosen))),
+      bin_range_(bin_range(device, batches_.size())),
+      triangle_range_(batches_range(batches_.size())),
+      block_range_(block_range(device)),
       queue_(device, first_capacity),
       blocks_(device, first_capacity),
       counts_(device, 1) {}
-
-void Triangles::bin() {
-    const Projection& p = projection_;
-    counts_.fill({0, 0});
-    p.kernels_.bin.run(bin_range(device_, batches_.size()), counts_, queue_, capacity_of(queue_),
-                       blocks_, capacity_of(blocks_), p.views_, p.instances_, p.vertices_,
-                       p.geometry_.positions(), p.geometry_.indices(), batches_);
-    counted_ = counts_.download_async();
-    all_fitted_.reset();
-}
 
 bool Triangles::finish_or_grow() {
     if (all_fitted_) return *all_fitted_;
@@ -317,8 +299,6 @@ bool Triangles::finish_or_grow() {
         blocks_ = cellist::Buffer<RasterBlock>(device_, counts.blocks);
     return *all_fitted_;
 }
-
-cellist::Range Triangles::triangles() const { return batches_range(batches_.size()); }
 
 std::uint64_t Triangles::device_bytes() const {
     return batches_.size() * sizeof(RasterBatch) + queue_.size() * sizeof(RasterTriangle) +

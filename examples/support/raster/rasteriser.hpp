@@ -55,7 +55,6 @@ struct Placed {
 /// The build options of every kernel of the rasteriser: correctly rounded division where the device
 /// has it, so that the CPU can follow it bit for bit.
 [[nodiscard]] std::string build_options(const cellist::Device& device);
-[[nodiscard]] bool divides_exactly(const cellist::Device& device);
 
 /// What the kernels are compiled for.
 struct Sampling {
@@ -116,7 +115,10 @@ public:
     void move(std::span<const Placed> placed, std::span<const View> views);
 
     /// Projects the vertices. Does not block.
-    void transform();
+    void transform() {
+        kernels_.transform.run(vertex_range_, views_, instances_, batches_, geometry_.positions(),
+                               vertices_);
+    }
 
     [[nodiscard]] const cellist::Buffer<View>& views() const { return views_; }
     [[nodiscard]] std::uint64_t device_bytes() const;
@@ -134,6 +136,7 @@ private:
     cellist::Buffer<RasterInstance> instances_;
     cellist::Buffer<RasterBatch> batches_;
     cellist::Buffer<RasterVertex> vertices_;
+    cellist::Range vertex_range_;
 };
 
 /// The triangles of some of the instances: divides the large ones into blocks of pixels, and draws
@@ -146,7 +149,13 @@ public:
               std::span<const std::size_t> chosen);
 
     /// Puts the large triangles and their blocks into queues. Does not block.
-    void bin();
+    void bin() {
+        counts_.fill({0, 0});
+        run(projection_.kernels_.bin, bin_range_, counts_, queue_, capacity_of(queue_), blocks_,
+            capacity_of(blocks_));
+        counted_ = counts_.download_async();
+        all_fitted_.reset();
+    }
 
     /// Waits for bin(). False if the queues had no room for all: they have grown then, and whoever
     /// has drawn since bin() begins again there.
@@ -155,21 +164,21 @@ public:
     /// Draws with a pass whose RASTER_TARGET takes `targets`. Does not block.
     template <class... Targets>
     void draw(Pass& pass, const Targets&... targets) {
-        const Projection& p = projection_;
-        const auto run = [&](cellist::Kernel& kernel, const cellist::Range& range,
-                             const auto&... queue) {
-            kernel.run(range, targets..., queue..., p.views_, p.instances_, p.vertices_,
-                       p.geometry_.positions(), p.geometry_.indices(), batches_);
-        };
-        run(pass.small_, triangles());
-        run(pass.blocks_, groups_, counts_, queue_, capacity_of(queue_), blocks_,
+        run(pass.small_, triangle_range_, targets...);
+        run(pass.blocks_, block_range_, targets..., counts_, queue_, capacity_of(queue_), blocks_,
             capacity_of(blocks_));
     }
 
     [[nodiscard]] std::uint64_t device_bytes() const;
 
 private:
-    [[nodiscard]] cellist::Range triangles() const;
+    // Runs a kernel whose last parameters are RASTER_SCENE.
+    template <class... Args>
+    void run(cellist::Kernel& kernel, const cellist::Range& range, const Args&... args) {
+        const Projection& p = projection_;
+        kernel.run(range, args..., p.views_, p.instances_, p.vertices_, p.geometry_.positions(),
+                   p.geometry_.indices(), batches_);
+    }
     template <class T>
     [[nodiscard]] static cl_uint capacity_of(const cellist::Buffer<T>& queue) {
         return static_cast<cl_uint>(queue.size());
@@ -177,8 +186,10 @@ private:
 
     const cellist::Device& device_;
     const Projection& projection_;
-    cellist::Range groups_;
     cellist::Buffer<RasterBatch> batches_;
+    cellist::Range bin_range_;
+    cellist::Range triangle_range_;
+    cellist::Range block_range_;
     cellist::Buffer<RasterTriangle> queue_;
     cellist::Buffer<RasterBlock> blocks_;
     cellist::Buffer<RasterCounts> counts_;

@@ -1,0 +1,307 @@
+// What comes before drawing: vertices are projected, and triangles are clipped and binned.
+
+// ---- projection ---------------------------------------------------------------------------------
+//
+// Where vertices snap to is part of the definition of a picture, which the reference of cellist-oit
+// follows with code of its own. So each operation is rounded to float: every product that is added
+// to something is an explicit fma, in a fixed order, and nothing else is contracted.
+
+#define RASTER_PLANES 5
+
+static inline float raster_row(const float* row, float x, float y, float z) {
+    return fma(row[0], x, fma(row[1], y, fma(row[2], z, row[3])));
+}
+
+// At least 0 on the inner side of a plane: 0 near, 1 right, 2 left, 3 bottom, 4 top.
+static inline float raster_plane(const View* view, int plane, float x, float y, float w) {
+    if (plane == 0) return w - view->near_depth;
+    if (plane == 1) return fma(RASTER_GUARD, w, -x);
+    if (plane == 2) return fma(RASTER_GUARD, w, x);
+    if (plane == 3) return fma(RASTER_GUARD, w, -y);
+    return fma(RASTER_GUARD, w, y);
+}
+
+// One bit for each plane that the point is outside of.
+static inline int raster_outside(const View* view, float x, float y, float w) {
+    int bits = 0;
+    for (int plane = 0; plane < RASTER_PLANES; ++plane)
+        if (!(raster_plane(view, plane, x, y, w) >= 0.0f)) bits |= 1 << plane;
+    return bits;
+}
+
+// Sub-pixels from the image's edge for a coordinate that is inside of the guard band.
+static inline int raster_snap(float coordinate, float w, int side) {
+    return (int)rint(coordinate / w) + side * (RASTER_SUBPIXELS / 2);
+}
+
+// Projects the vertices of all instances, a work-group for each batch of them. positions: 3 floats
+// a vertex.
+kernel void raster_transform(global const View* views, global const RasterInstance* instances,
+                             global const RasterBatch* batches, global const float* positions,
+                             global RasterVertex* vertices) {
+    const RasterBatch batch = batches[get_group_id(0)];
+    const uint i = batch.first + get_local_id(0);
+    if (i >= batch.end) return;
+    const float3 p = vload3(i, positions);
+    const RasterInstance instance = instances[batch.instance];
+    const View view = views[instance.eye];
+    const float x = raster_row(instance.row_x, p.x, p.y, p.z);
+    const float y = raster_row(instance.row_y, p.x, p.y, p.z);
+    RasterVertex vertex;
+    vertex.w = raster_row(instance.row_w, p.x, p.y, p.z);
+    vertex.outside = raster_outside(&view, x, y, vertex.w);
+    vertex.x = vertex.outside == 0 ? raster_snap(x, vertex.w, view.width) : 0;
+    vertex.y = vertex.outside == 0 ? raster_snap(y, vertex.w, view.height) : 0;
+    vertices[i + instance.vertex_offset] = vertex;
+}
+
+// ---- clipping -----------------------------------------------------------------------------------
+//
+// To the near plane and the guard band.
+
+#define RASTER_POLYGON_MAX 8
+#define RASTER_PIECES_MAX 6
+
+// A vertex in clip coordinates; share[j] is the part of the triangle's corner j in it.
+typedef struct {
+    float x, y, w;
+    float share[3];
+} RasterClipVertex;
+
+// What clipping leaves of a triangle: a convex polygon.
+typedef struct {
+    RasterClipVertex vertex[RASTER_POLYGON_MAX];
+    int count;
+} RasterPolygon;
+
+// Corner j of a triangle, before clipping.
+static inline RasterClipVertex raster_corner(const RasterInstance* instance, int j, float x,
+                                             float y, float z) {
+    RasterClipVertex corner;
+    corner.x = raster_row(instance->row_x, x, y, z);
+    corner.y = raster_row(instance->row_y, x, y, z);
+    corner.w = raster_row(instance->row_w, x, y, z);
+    for (int k = 0; k < 3; ++k) corner.share[k] = k == j ? 1.0f : 0.0f;
+    return corner;
+}
+
+// Where the edge from a (inside, distance da) to b (outside, db) meets a plane. Computed from the
+// inner end in every triangle, so that triangles that share the edge agree.
+static inline RasterClipVertex raster_meet(const View* view, int plane, RasterClipVertex a,
+                                           float da, RasterClipVertex b, float db) {
+    const float t = da / (da - db);
+    RasterClipVertex v;
+    v.x = fma(t, b.x - a.x, a.x);
+    v.y = fma(t, b.y - a.y, a.y);
+    v.w = plane == 0 ? view->near_depth : fma(t, b.w - a.w, a.w);
+    for (int k = 0; k < 3; ++k) v.share[k] = fma(t, b.share[k] - a.share[k], a.share[k]);
+    const float guard = RASTER_GUARD * v.w;
+    if (plane == 1) v.x = guard;
+    if (plane == 2) v.x = -guard;
+    if (plane == 3) v.y = guard;
+    if (plane == 4) v.y = -guard;
+    return v;
+}
+
+// Clips a triangle against the near plane and the guard band. The polygon has 0 or 3 to 8 vertices.
+static inline void raster_clip(const View* view, RasterPolygon* polygon) {
+    for (int plane = 0; plane < RASTER_PLANES; ++plane) {
+        const RasterPolygon in = *polygon;
+        polygon->count = 0;
+        for (int i = 0; i < in.count; ++i) {
+            const RasterClipVertex a = in.vertex[i];
+            const RasterClipVertex b = in.vertex[i + 1 < in.count ? i + 1 : 0];
+            const float da = raster_plane(view, plane, a.x, a.y, a.w);
+            const float db = raster_plane(view, plane, b.x, b.y, b.w);
+            if (da >= 0.0f && polygon->count < RASTER_POLYGON_MAX)
+                polygon->vertex[polygon->count++] = a;
+            if ((da >= 0.0f) != (db >= 0.0f) && polygon->count < RASTER_POLYGON_MAX)
+                polygon->vertex[polygon->count++] = da >= 0.0f
+                                                        ? raster_meet(view, plane, a, da, b, db)
+                                                        : raster_meet(view, plane, b, db, a, da);
+        }
+        if (polygon->count < 3) polygon->count = 0;
+    }
+}
+
+// What clipping leaves of a triangle.
+static inline void raster_clip_triangle(RASTER_SCENE, const View* view, const RasterTriangle* t,
+                                        RasterPolygon* polygon) {
+    const RasterInstance instance = instances[t->instance];
+    for (int k = 0; k < 3; ++k) {
+        const float3 p = vload3(t->corner[k], positions);
+        polygon->vertex[k] = raster_corner(&instance, k, p.x, p.y, p.z);
+    }
+    polygon->count = 3;
+    raster_clip(view, polygon);
+}
+
+// Makes t the triangle of vertices 0, piece + 1 and piece + 2 of its polygon.
+static inline void raster_piece(const View* view, const RasterPolygon* polygon, uint piece,
+                                RasterTriangle* t) {
+    t->number = t->number / RASTER_NUMBERS * RASTER_NUMBERS + piece;
+    t->clipped = 1;
+    for (int k = 0; k < 3; ++k) {
+        const RasterClipVertex v = polygon->vertex[k == 0 ? 0u : piece + k];
+        t->x[k] = raster_snap(v.x, v.w, view->width);
+        t->y[k] = raster_snap(v.y, v.w, view->height);
+        t->inverse_w[k] = v.w;  // until raster_invert()
+        for (int j = 0; j < 3; ++j) t->share[3 * k + j] = v.share[j];
+    }
+}
+
+// ---- binning ------------------------------------------------------------------------------------
+//
+// Puts large triangles and the pieces of clipped ones into a queue, and the blocks of pixels that
+// they touch into another.
+//
+//   counts           entries so far, from 0; those that a queue has no room for are counted as well
+//   ..._capacity     of the queues
+
+// Work-items that look for the blocks of a triangle together: on CPUs, where a block has one, each
+// is faster alone.
+#define RASTER_BIN_TEAM (RASTER_LANES == 1 ? 1u : 8u)
+
+// Nothing more is counted beyond this, so that the counters cannot wrap.
+#define RASTER_COUNT_MAX 0x80000000u
+
+#define RASTER_BIN_QUEUES                                                                          \
+    volatile global RasterCounts *counts, global RasterTriangle *triangles,                        \
+        const uint triangles_capacity, global RasterBlock *blocks, const uint blocks_capacity
+
+// Takes `wanted` entries of a queue, and returns the first.
+static inline uint raster_take(volatile global uint* count, uint wanted) {
+    return *count < RASTER_COUNT_MAX ? atomic_add(count, wanted) : RASTER_COUNT_MAX;
+}
+
+// The blocks of a bounding box.
+typedef struct {
+    int x, y, across, down;
+} RasterBox;
+
+static inline RasterBox raster_box(const RasterTriangle* t) {
+    RasterBox box;
+    box.x = t->x_begin / RASTER_BLOCK_PIXELS;
+    box.y = t->y_begin / RASTER_BLOCK_PIXELS;
+    box.across = (t->x_end - 1) / RASTER_BLOCK_PIXELS - box.x + 1;
+    box.down = (t->y_end - 1) / RASTER_BLOCK_PIXELS - box.y + 1;
+    return box;
+}
+
+// The next block of a box for a work-item of a team, row by row: at first `lane` blocks behind the
+// upper left one, then a team's further.
+static inline void raster_step(const RasterBox* box, uint blocks, int* x, int* y) {
+    for (*x += blocks; *x >= box->across; *x -= box->across) ++*y;
+}
+
+// The upper left pixel of a block: x + 65536 * y.
+static inline uint raster_block_place(const RasterBox* box, int x, int y) {
+    return (box->x + x) * RASTER_BLOCK_PIXELS + 65536u * ((box->y + y) * RASTER_BLOCK_PIXELS);
+}
+
+// False where no sample of a block is covered, because all lie outside of one edge.
+static inline bool raster_touches(const RasterTriangle* t, const RasterBox* box, int x, int y) {
+    const int reach = RASTER_SAMPLES == 1 ? 0 : RASTER_REACH;
+    const int left = raster_centre((box->x + x) * RASTER_BLOCK_PIXELS) - reach;
+    const int top = raster_centre((box->y + y) * RASTER_BLOCK_PIXELS) - reach;
+    const int side = (RASTER_BLOCK_PIXELS - 1) * RASTER_SUBPIXELS + 2 * reach;
+    bool touches = true;
+    for (int i = 0; i < 3; ++i) {
+        const int edge_x = raster_dy(t, i) < 0 ? left + side : left;
+        const int edge_y = raster_dx(t, i) > 0 ? top + side : top;
+        touches = touches && raster_edge(t, i, edge_x, edge_y) >= raster_bias(t, i);
+    }
+    return touches;
+}
+
+// Makes a triangle ready to be scanned. False where it is not visible.
+static inline bool raster_ready(const View* view, RasterTriangle* t) {
+    raster_bound(view, t);
+    if (!raster_visible(t) || !raster_orient(t)) return false;
+    raster_invert(t);
+    return true;
+}
+
+// A group a batch: a work-item a triangle, and then all work-items, of which there may be more,
+// share the triangles' blocks.
+kernel void raster_bin(RASTER_BIN_QUEUES, RASTER_SCENE) {
+    local uint listed[RASTER_BATCH * RASTER_PIECES_MAX];  // of the queue
+    local RasterTriangle near[RASTER_BATCH];              // the first of these
+    local uint listed_count, unclipped, block_count, first;
+    const uint item = get_local_id(0);
+    if (item == 0) listed_count = unclipped = block_count = 0;
+    barrier(CLK_LOCAL_MEM_FENCE);
+
+    RasterTriangle t;
+    uint own = CELLIST_NONE;
+    int outside_all, outside_any;
+    if (item < RASTER_BATCH &&
+        raster_load(RASTER_SCENE_PASS, get_group_id(0) * RASTER_BATCH + item, &t, &outside_all,
+                    &outside_any) &&
+        !outside_all) {
+        const View view = views[instances[t.instance].eye];
+        if (!outside_any) {
+            if (!raster_small(&t) && raster_ready(&view, &t)) own = atomic_inc(&unclipped);
+        } else {
+            RasterPolygon polygon;
+            raster_clip_triangle(RASTER_SCENE_PASS, &view, &t, &polygon);
+            for (int piece = 0; piece + 2 < polygon.count; ++piece) {
+                RasterTriangle clipped = t;
+                raster_piece(&view, &polygon, piece, &clipped);
+                if (!raster_ready(&view, &clipped)) continue;
+                const uint at = raster_take(&counts->triangles, 1);
+                if (at >= triangles_capacity) continue;
+                triangles[at] = clipped;
+                const uint place = atomic_inc(&listed_count);
+                listed[place] = at;
+                if (place < RASTER_BATCH) near[place] = clipped;
+            }
+        }
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (item == 0 && unclipped != 0) first = raster_take(&counts->triangles, unclipped);
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (own != CELLIST_NONE && first + own < triangles_capacity) {
+        const uint place = atomic_inc(&listed_count);
+        triangles[first + own] = t;
+        listed[place] = first + own;
+        if (place < RASTER_BATCH) near[place] = t;
+    }
+    barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
+
+    const uint count = listed_count;
+    const uint teams = get_local_size(0) / RASTER_BIN_TEAM;
+    const uint team = item / RASTER_BIN_TEAM, lane = item % RASTER_BIN_TEAM;
+    uint touched = 0, looked_at = 0, found = 0;  // a bit for each of the first 32 that it looks at
+    for (uint n = team; n < count; n += teams) {
+        const RasterTriangle one = n < RASTER_BATCH ? near[n] : triangles[listed[n]];
+        const RasterBox box = raster_box(&one);
+        int x = 0, y = 0;
+        for (raster_step(&box, lane, &x, &y); y < box.down;
+             raster_step(&box, RASTER_BIN_TEAM, &x, &y), ++looked_at) {
+            if (!raster_touches(&one, &box, x, y)) continue;
+            ++touched;
+            if (looked_at < 32) found |= 1u << looked_at;
+        }
+    }
+    uint next = touched != 0 ? atomic_add(&block_count, touched) : 0;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (item == 0 && block_count != 0) first = raster_take(&counts->blocks, block_count);
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (touched == 0) return;
+    next += first;
+    looked_at = 0;
+    for (uint n = team; n < count; n += teams) {
+        const RasterTriangle one = n < RASTER_BATCH ? near[n] : triangles[listed[n]];
+        const RasterBox box = raster_box(&one);
+        int x = 0, y = 0;
+        for (raster_step(&box, lane, &x, &y); y < box.down;
+             raster_step(&box, RASTER_BIN_TEAM, &x, &y), ++looked_at) {
+            if (looked_at < 32 ? !(found >> looked_at & 1) : !raster_touches(&one, &box, x, y))
+                continue;
+            const RasterBlock block = {listed[n], raster_block_place(&box, x, y)};
+            if (next < blocks_capacity) blocks[next] = block;
+            ++next;
+        }
+    }
+}
