@@ -65,10 +65,6 @@ std::string list(const auto& values, const auto& write) {
     return text;
 }
 
-std::string define(const std::string& name, const std::string& value) {
-    return "#define " + name + " " + value + "\n";
-}
-
 // The maxima and sums of all pixels.
 struct Metrics {
     std::vector<double> most;
@@ -125,7 +121,7 @@ public:
         frame_.time = frame.time;
         frame_.views = frame.views;
         source_.follow();
-        source_.transform();
+        source_.projection().transform();
         do source_.prepare();
         while (!source_.finish_or_grow());
         run();
@@ -150,12 +146,11 @@ protected:
         return resolution_of(frame_, source_.features());
     }
     [[nodiscard]] std::string survey_text() const {
-        return define("OIT_BINS", std::to_string(bins)) +
-               define("OIT_FORMATS", std::to_string(packed_formats)) +
-               define("OIT_LAYER_COUNT", std::to_string(layers_.size())) +
+        return define("OIT_BINS", bins) + define("OIT_FORMATS", packed_formats) +
+               define("OIT_LAYER_COUNT", layers_.size()) +
                define("OIT_LAYER_COUNTS",
                       list(layers_, [](std::uint32_t k) { return std::to_string(k) + "u"; })) +
-               define("OIT_EPSILON_COUNT", std::to_string(epsilons_.size())) +
+               define("OIT_EPSILON_COUNT", epsilons_.size()) +
                define("OIT_EPSILONS",
                       list(epsilons_, [](float e) { return hexadecimal(e) + "f"; })) +
                text(kernels::survey_cl, maxima(), sums());
@@ -164,8 +159,7 @@ protected:
 private:
     [[nodiscard]] static std::string text(std::string_view source, std::size_t maxima,
                                           std::size_t sums) {
-        return define("OIT_MAXIMA", std::to_string(maxima)) +
-               define("OIT_SUMS", std::to_string(sums)) + std::string(errors) +
+        return define("OIT_MAXIMA", maxima) + define("OIT_SUMS", sums) + std::string(errors) +
                std::string(kernels::metrics_clh) + std::string(source);
     }
     [[nodiscard]] std::size_t bounds() const {

@@ -98,23 +98,13 @@ bool resolves_samples(const Quality& quality) {
     return quality.samples > 1 && quality.resolve == Resolve::per_sample;
 }
 
-raster::Sampling sampling_of(const Quality& quality) {
-    return {.samples = quality.samples, .depth_range = quality.depth_range};
-}
-
 }  // namespace
 
 FragmentSource::Opaque::Passes::Passes(const FragmentSource& source)
     : triangles(source.device_, source.projection_, chosen(source.frame_.scene, true)),
-      depth(source.device_, sampling_of(source.frame_.quality),
-            source.with_defines({kernels::shading_clh, kernels::opaque_depth_cl}),
-            "opaque_depth.cl", cellist::type<OitFrame>, cellist::type<Material>),
-      owner(source.device_, sampling_of(source.frame_.quality),
-            source.with_defines({kernels::shading_clh, kernels::opaque_owner_cl}),
-            "opaque_owner.cl", cellist::type<OitFrame>, cellist::type<Material>),
-      colour(source.device_, sampling_of(source.frame_.quality),
-             source.with_defines({kernels::shading_clh, kernels::opaque_colour_cl}),
-             "opaque_colour.cl", cellist::type<OitFrame>, cellist::type<Material>),
+      depth(source.opaque_pass(kernels::opaque_depth_cl, "opaque_depth.cl")),
+      owner(source.opaque_pass(kernels::opaque_owner_cl, "opaque_owner.cl")),
+      colour(source.opaque_pass(kernels::opaque_colour_cl, "opaque_colour.cl")),
       owners(source.device_, source.samples()) {}
 
 FragmentSource::Opaque::Opaque(const FragmentSource& source)
@@ -130,7 +120,7 @@ FragmentSource::FragmentSource(const cellist::Device& device, const Frame& frame
       layout_(node_layout(frame.quality, features_)),
       constants_(constants_of(frame, features_)),
       defines_(defines_of(frame, features_) + defines_of(layout_)),
-      setup_(device, sampling_of(frame.quality)),
+      setup_(device, sampling()),
       geometry_(device, meshes_of(frame.scene)),
       projection_(device, setup_, geometry_, placed_at(frame.scene, frame.time), frame.views),
       transparent_(device, projection_, chosen(frame.scene, false)),
@@ -160,11 +150,7 @@ void FragmentSource::follow() {
     projection_.move(placed_at(frame_.scene, frame_.time), frame_.views);
 }
 
-void FragmentSource::transform() { projection_.transform(); }
-
-void FragmentSource::prepare() {
-    transparent_.bin();
-    if (!opaque_ || !opaque_->passes) return;
+void FragmentSource::draw_opaque() {
     Opaque& o = *opaque_;
     Opaque::Passes& passes = *opaque_->passes;
     passes.triangles.bin();
@@ -181,7 +167,7 @@ void FragmentSource::set_slice(const cellist::Slice& slice) {
     constants_.end_pixel = static_cast<cl_uint>(slice.first_cell + slice.cells);
 }
 
-void FragmentSource::finish() {
+void FragmentSource::average_samples() {
     if (average_)
         average_->run(cellist::Range::padded(image_.size(), 64), *sample_image_, image_,
                       static_cast<cl_uint>(image_.size()));
@@ -197,11 +183,19 @@ cellist::Shape FragmentSource::shape() const {
             frame_.views.size()};
 }
 
-raster::Sampling FragmentSource::sampling() const { return sampling_of(frame_.quality); }
+raster::Sampling FragmentSource::sampling() const {
+    return {.samples = frame_.quality.samples, .depth_range = frame_.quality.depth_range};
+}
 
 std::string FragmentSource::with_defines(std::initializer_list<std::string_view> parts) const {
     const std::string text = joined(parts);
     return defines_named(defines_, text) + text;
+}
+
+raster::Pass FragmentSource::opaque_pass(std::string_view source,
+                                         const std::string& file_name) const {
+    return raster::Pass(device_, sampling(), with_defines({kernels::shading_clh, source}),
+                        file_name, cellist::type<OitFrame>, cellist::type<Material>);
 }
 
 std::string FragmentSource::pass_text(std::string_view source) const {

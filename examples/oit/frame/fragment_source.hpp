@@ -37,12 +37,15 @@ public:
     /// The frame has another time, or other views of the same size. Blocks.
     void follow();
 
-    /// Projects the vertices. Does not block.
-    void transform();
+    /// The instances of the scene in the image: transform() comes before all else in a frame.
+    [[nodiscard]] raster::Projection& projection() { return projection_; }
 
     /// Divides large triangles into blocks and draws the opaque surfaces. Does not block. With
     /// Quality::reduce, the opaque depths are the caller's to write.
-    void prepare();
+    void prepare() {
+        transparent_.bin();
+        if (opaque_ && opaque_->passes) draw_opaque();
+    }
 
     /// Waits until everything is drawn since prepare(). False if something had no room: its buffers
     /// have grown then, and the frame begins again at prepare().
@@ -97,7 +100,7 @@ public:
     }
 
     /// Averages samples that were blended on their own. Does not block.
-    void finish();
+    void average_samples();
 
     [[nodiscard]] const cellist::Device& device() const { return device_; }
     [[nodiscard]] const Frame& frame() const { return frame_; }
@@ -145,9 +148,12 @@ private:
         explicit Opaque(const FragmentSource& source);
     };
 
+    void draw_opaque();
     [[nodiscard]] raster::Sampling sampling() const;
     // The parts, after the macros that they name.
     [[nodiscard]] std::string with_defines(std::initializer_list<std::string_view> parts) const;
+    [[nodiscard]] raster::Pass opaque_pass(std::string_view source,
+                                           const std::string& file_name) const;
     [[nodiscard]] std::string pass_text(std::string_view source) const;
     [[nodiscard]] cellist::Source screen_source(std::string_view source,
                                                 const std::string& file_name) const;

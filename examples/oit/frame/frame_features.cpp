@@ -50,10 +50,6 @@ float brightest(const Material& material, const Lighting& lighting) {
     return most;
 }
 
-std::string define(const std::string& name, auto value) {
-    return "#define " + name + " " + std::to_string(value) + "\n";
-}
-
 // Of the samples, in pixels from the centre.
 std::string offsets_text(int samples) {
     std::string text;
@@ -117,6 +113,10 @@ std::uint32_t state_floats(const Quality& quality, const FrameFeatures& features
     return samples * (3 + transmittance + depth + extinction);
 }
 
+std::string define(const std::string& name, const std::string& value) {
+    return "#define " + name + " " + value + "\n";
+}
+
 std::string defines_of(const Frame& frame, const FrameFeatures& features) {
     const Quality& quality = frame.quality;
     std::string text;
@@ -142,8 +142,7 @@ std::string defines_of(const Frame& frame, const FrameFeatures& features) {
     if (quality.resolve == Resolve::per_sample && quality.samples > 1)
         text += "#define OIT_PER_SAMPLE\n";
     if (quality.depth_range)
-        text +=
-            "#define OIT_DEPTH_RANGE\n#define OIT_OFFSETS " + offsets_text(quality.samples) + "\n";
+        text += "#define OIT_DEPTH_RANGE\n" + define("OIT_OFFSETS", offsets_text(quality.samples));
     if (quality.epsilon > 0) text += "#define OIT_EARLY_END\n";
     if (quality.reduce > 1) text += "#define OIT_REDUCED\n";
     if (frame.memory_bytes) text += "#define OIT_SLICES\n";

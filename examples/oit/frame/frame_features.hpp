@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <string>
 
@@ -35,6 +36,12 @@ struct FrameFeatures {
 
 /// How many floats hold what is blended of a pixel (see blend.clh).
 [[nodiscard]] std::uint32_t state_floats(const Quality& quality, const FrameFeatures& features);
+
+/// The line that defines a macro.
+[[nodiscard]] std::string define(const std::string& name, const std::string& value);
+[[nodiscard]] std::string define(const std::string& name, std::integral auto value) {
+    return define(name, std::to_string(value));
+}
 
 /// The macros that kernels of this frame are compiled with.
 [[nodiscard]] std::string defines_of(const Frame& frame, const FrameFeatures& features);

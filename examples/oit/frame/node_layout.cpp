@@ -55,7 +55,7 @@ private:
 std::string defines_of(const std::string& name, const NodeField& field) {
     if (field.bits == 0) return {};
     const auto line = [&](const std::string& what, std::uint32_t value) {
-        return "#define OIT_" + name + "_" + what + " " + std::to_string(value) + "\n";
+        return define("OIT_" + name + "_" + what, value);
     };
     return line("WORD", field.word) + line("SHIFT", field.shift) + line("BITS", field.bits);
 }
@@ -89,8 +89,8 @@ NodeLayout node_layout(const Quality& quality, const FrameFeatures& features) {
 }
 
 std::string defines_of(const NodeLayout& layout) {
-    std::string text = "#define OIT_NODE Node" + std::to_string(layout.words) +
-                       "\n#define OIT_WORDS " + std::to_string(layout.words) + "\n";
+    std::string text = define("OIT_NODE", "Node" + std::to_string(layout.words)) +
+                       define("OIT_WORDS", layout.words);
     switch (layout.format) {
         case NodeFormat::float32:
             text += "#define OIT_COLOUR_FLOAT\n";
@@ -102,11 +102,11 @@ std::string defines_of(const NodeLayout& layout) {
         case NodeFormat::rgb565_d16:
             text += "#define OIT_COLOUR_565\n";
             break;
-        default:
-            text += "#define OIT_COLOUR_8\n";
+        default:  // 8 bits
+            break;
     }
     if (const std::uint32_t bits = depth_bits(layout.format); bits > 0)
-        text += "#define OIT_DEPTH_BITS " + std::to_string(bits) + "\n";
+        text += define("OIT_DEPTH_BITS", bits);
     if (layout.depth_scale == DepthScale::reversed) text += "#define OIT_DEPTH_REVERSED\n";
     text += defines_of("ALPHA", layout.alpha);
     text += defines_of("COVERAGE", layout.coverage);

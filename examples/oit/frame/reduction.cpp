@@ -65,7 +65,7 @@ Scene opaque_part(const Scene& scene) {
 }
 
 cellist::Source kernel_source(const FragmentSource& source, int block) {
-    std::string defines = "#define OIT_BLOCK " + std::to_string(block) + "\n";
+    std::string defines = define("OIT_BLOCK", block);
     if (source.depth_bits()) defines += "#define OIT_HAS_OPAQUE\n";
     return {.text = defines + std::string(kernels::reduce_cl), .file_name = "reduce.cl"};
 }
@@ -94,7 +94,7 @@ void Reduction::follow() {
     source_.follow();
 }
 
-void Reduction::prepare(const FragmentSource& transparent) {
+void Reduction::draw_opaque(const FragmentSource& transparent) {
     // The reduced frame begins with what is drawn here, so nothing may be missing.
     do source_.prepare();
     while (!source_.finish_or_grow());
@@ -104,7 +104,7 @@ void Reduction::prepare(const FragmentSource& transparent) {
                     static_cast<cl_int>(opaque_.width()), static_cast<cl_int>(opaque_.height()));
 }
 
-void Reduction::finish(const FragmentSource& transparent) {
+void Reduction::enlarge(const FragmentSource& transparent) {
     const auto width = static_cast<cl_int>(reduced_.width());
     const auto height = static_cast<cl_int>(reduced_.height());
     if (const cellist::Buffer<cl_uint>* depths = source_.depth_bits())

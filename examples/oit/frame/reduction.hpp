@@ -27,11 +27,11 @@ public:
 
     /// Takes the frame's views and time, which may have changed. Blocks.
     void follow();
-    void transform() { source_.transform(); }
+    void transform() { source_.projection().transform(); }
     /// Draws the opaque surfaces, and writes their depths for the reduced frame. Blocks.
-    void prepare(const FragmentSource& transparent);
+    void draw_opaque(const FragmentSource& transparent);
     /// Enlarges what came of the reduced frame over the opaque surfaces. Does not block.
-    void finish(const FragmentSource& transparent);
+    void enlarge(const FragmentSource& transparent);
 
     /// The linear image at full resolution, eye by eye, row by row from the top.
     [[nodiscard]] const cellist::Buffer<cl_float4>& image() const { return source_.image(); }

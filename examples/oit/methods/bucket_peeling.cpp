@@ -27,7 +27,7 @@ std::size_t buckets_of(const FragmentSource& source) {
 }
 
 std::string text(const FragmentSource& source, const std::string& defines = {}) {
-    return defines + "#define OIT_BUCKETS " + std::to_string(buckets_of(source)) + "\n" +
+    return defines + define("OIT_BUCKETS", buckets_of(source)) +
            peeling_text(kernels::bucket_peeling_cl);
 }
 

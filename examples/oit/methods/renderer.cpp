@@ -34,23 +34,24 @@ Renderer::Renderer(const cellist::Device& device, const Frame& frame, const Meth
       source_(device, reduction_ ? reduction_->reduced() : frame),
       method_(make_method(source_, method)) {}
 
-void Renderer::transform() {
+void Renderer::start(const AfterPass& after_pass) {
     if (reduction_) reduction_->transform();
-    source_.transform();
-}
+    source_.projection().transform();
+    after_pass(&PassTimes::transform_ms);
 
-void Renderer::store() {
-    if (reduction_) reduction_->prepare(source_);
+    if (reduction_) reduction_->draw_opaque(source_);
     source_.prepare();
     method_->store();
     check_memory(*method_, source_.frame().memory_bytes);
-}
+    after_pass(&PassTimes::raster_insert_ms);
 
-void Renderer::resolve() {
     method_->resolve();
-    source_.finish();
-    if (reduction_) reduction_->finish(source_);
+    source_.average_samples();
+    if (reduction_) reduction_->enlarge(source_);
+    after_pass(&PassTimes::sort_blend_ms);
+
     drawn_ = device_.enqueue_marker();
+    device_.queue().flush();
 }
 
 bool Renderer::finish_or_grow() {
@@ -72,18 +73,8 @@ double Renderer::draw() {
     return stopwatch.ms();
 }
 
-void Renderer::start() {
-    transform();
-    store();
-    resolve();
-    device_.queue().flush();
-}
-
 void Renderer::finish() {
-    while (!finish_or_grow()) {
-        store();
-        resolve();
-    }
+    while (!finish_or_grow()) start();
     drawn_.wait();
 }
 
@@ -95,17 +86,14 @@ double Renderer::draw_changed() {
 
 PassTimes Renderer::draw_by_pass() {
     PassTimes times;
-    const auto measure = [&](double PassTimes::*pass, auto enqueue) {
-        device_.finish();
-        const support::Stopwatch stopwatch;
-        enqueue();
-        device_.finish();
-        times.*pass = stopwatch.ms();
-    };
-    measure(&PassTimes::transform_ms, [&] { transform(); });
     do {
-        measure(&PassTimes::raster_insert_ms, [&] { store(); });
-        measure(&PassTimes::sort_blend_ms, [&] { resolve(); });
+        device_.finish();
+        support::Stopwatch stopwatch;
+        start([&](double PassTimes::*pass) {
+            device_.finish();
+            times.*pass = stopwatch.ms();
+            stopwatch = {};
+        });
     } while (!finish_or_grow());
     return times;
 }

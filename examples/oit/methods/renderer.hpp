@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -18,6 +19,9 @@ struct PassTimes {
     double raster_insert_ms = 0;  ///< binning, the opaque passes, shading and storing
     double sort_blend_ms = 0;
 };
+
+/// What to call after each pass of a frame is enqueued, with the place for its time.
+using AfterPass = std::function<void(double PassTimes::*)>;
 
 /// Draws a frame on a device with one of the methods.
 class Renderer {
@@ -37,7 +41,7 @@ public:
     /// The halves of draw(): the first enqueues the frame, and blocks only where frames are not of
     /// one kind yet; the second blocks until the image is there. In between, another renderer can
     /// start the next frame, so that the device does not wait for the host.
-    void start();
+    void start(const AfterPass& after_pass = [](double PassTimes::*) {});
     void finish();
     /// The same as draw() where the frame has another time, or other views of the same size.
     double draw_changed();
@@ -60,9 +64,8 @@ public:
     }
 
 private:
-    void transform();
-    void store();
-    void resolve();
+    // Waits for the frame. False if something had no room: it has grown, and the frame must start
+    // again.
     [[nodiscard]] bool finish_or_grow();
 
     const cellist::Device& device_;

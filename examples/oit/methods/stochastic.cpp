@@ -15,7 +15,7 @@ std::uint32_t trials_of(const FragmentSource& source) {
 }
 
 std::string text(const FragmentSource& source, const std::string& defines = {}) {
-    return defines + "#define OIT_TRIALS " + std::to_string(trials_of(source)) + "\n" +
+    return defines + define("OIT_TRIALS", trials_of(source)) +
            accumulating_text(kernels::stochastic_cl);
 }
 

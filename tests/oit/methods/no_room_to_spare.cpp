@@ -11,7 +11,7 @@ namespace cellist::test {
 namespace {
 
 std::vector<cl_float4> draw(oit::FragmentSource& source, oit::Method& method) {
-    source.transform();
+    source.projection().transform();
     bool complete = false;
     while (!complete) {
         source.prepare();
@@ -20,7 +20,7 @@ std::vector<cl_float4> draw(oit::FragmentSource& source, oit::Method& method) {
         complete = source.finish_or_grow();
         complete = method.finish_or_grow() && complete;
     }
-    source.finish();
+    source.average_samples();
     return source.image().download();
 }
 
