@@ -2,7 +2,7 @@
 #include <array>
 
 #include "methods/accumulating.hpp"
-#include "methods/list_method.hpp"
+#include "methods/lists.hpp"
 #include "oit_kernels.hpp"
 
 namespace oit {
@@ -14,8 +14,7 @@ constexpr std::uint32_t default_steps = 8;
 std::unique_ptr<Method> make(FragmentSource& source) {
     const std::uint32_t steps = source.frame().quality.size.value_or(default_steps);
     return make_list_method(source, {.storage = cellist::Storage::linked},
-                            ListReader{"#define OIT_STEPS " + std::to_string(steps) + "\n" +
-                                           std::string(kernels::adaptive_cl),
+                            ListReader{define("OIT_STEPS", steps).append(kernels::adaptive_cl),
                                        "adaptive.cl", "oit_resolve_adaptive"});
 }
 

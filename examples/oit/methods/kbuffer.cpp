@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "methods/list_method.hpp"
+#include "methods/lists.hpp"
 
 namespace oit {
 namespace {

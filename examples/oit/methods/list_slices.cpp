@@ -22,13 +22,13 @@ template <class Node>
 class ListSlices : public Method {
 public:
     ListSlices(FragmentSource& source, const cellist::ListsOptions& options,
-               const ListReader& reader, bool sorts)
+               const ListReader& reader)
         : source_(source),
-          sorts_(sorts),
+          sorts_(reader.needs_sorted),
           node_bytes_(sizeof(Node) +
                       (options.storage == cellist::Storage::linked ? sizeof(cl_uint) : 0)),
-          head_bytes_(
-              bytes_of_empty({.storage = options.storage, .capacity_nodes = 0, .slots = 0}, sorts)),
+          head_bytes_(bytes_of_empty({.storage = options.storage, .capacity_nodes = 0, .slots = 0},
+                                     sorts_)),
           sort_bytes_(
               head_bytes_ -
               bytes_of_empty({.storage = options.storage, .capacity_nodes = 0, .slots = 0}, false)),
@@ -116,11 +116,11 @@ private:
 
 std::unique_ptr<Method> make_list_slices(FragmentSource& source,
                                          const cellist::ListsOptions& options,
-                                         const ListReader& reader, bool sorts) {
-    return with_node_type(
-        source.layout().words, [&]<class Node>(const Node*) -> std::unique_ptr<Method> {
-            return std::make_unique<ListSlices<Node>>(source, options, reader, sorts);
-        });
+                                         const ListReader& reader) {
+    return with_node_type(source.layout().words,
+                          [&]<class Node>(const Node*) -> std::unique_ptr<Method> {
+                              return std::make_unique<ListSlices<Node>>(source, options, reader);
+                          });
 }
 
 }  // namespace oit

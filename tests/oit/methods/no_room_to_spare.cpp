@@ -2,7 +2,7 @@
 #include <cstring>
 
 #include "camera.hpp"
-#include "methods/list_method.hpp"
+#include "methods/lists.hpp"
 #include "oit/support/procedural.hpp"
 #include "support/catch.hpp"
 #include "support/device.hpp"

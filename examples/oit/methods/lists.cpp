@@ -1,4 +1,5 @@
-#include "methods/list_method.hpp"
+// The methods that keep every fragment in a list of its pixel, and what they share with others.
+#include "methods/lists.hpp"
 
 #include <bit>
 
@@ -8,34 +9,22 @@
 namespace oit {
 namespace {
 
-// Up to here the nearest layers are kept in registers while the list is visited once; for more,
-// sorting the lists is faster.
+// Up to here, the reader keeps the nearest layers in registers while it visits a list once. For
+// more, sorting the lists is faster.
 constexpr std::uint32_t nearest_max = 16;
 
 // The longest lists that the reader sorts itself; longer ones are sorted before.
 constexpr std::uint32_t sorted_in_reader_max = 63;
 
-bool picks_nearest(const Quality& quality) {
-    return quality.layers && *quality.layers <= nearest_max;
-}
-
-std::string define(const std::string& name, std::uint32_t value) {
-    return "#define " + name + " " + std::to_string(value) + "\n";
-}
-
-ListReader blending_reader(const Quality& quality, std::string defines = {}) {
+ListReader blending_reader(const Quality& quality, bool needs_sorted, std::string defines = {}) {
     if (quality.layers) defines += define("OIT_LAYERS", *quality.layers);
-    return {defines.append(kernels::lists_cl), "lists.cl", "oit_resolve_lists"};
+    return {defines.append(kernels::lists_cl), "lists.cl", "oit_resolve_lists", needs_sorted};
 }
 
-bool needs_sorting(const Quality& quality, const std::optional<ListReader>& reader) {
-    return reader || !picks_nearest(quality);
-}
-
-ListReader reader_of(const Quality& quality, const std::optional<ListReader>& reader) {
-    if (reader) return *reader;
-    if (needs_sorting(quality, reader)) return blending_reader(quality);
-    return blending_reader(quality, define("OIT_NEAREST", *quality.layers));
+ListReader first_reader(const Quality& quality) {
+    if (quality.layers && *quality.layers <= nearest_max)
+        return blending_reader(quality, false, define("OIT_NEAREST", *quality.layers));
+    return blending_reader(quality, true);
 }
 
 // The first frame blocks until the lengths of the lists are known. Later frames are enqueued at
@@ -45,62 +34,62 @@ template <class Node>
 class ListMethod : public Method {
 public:
     ListMethod(FragmentSource& source, const cellist::ListsOptions& options,
-               const std::optional<ListReader>& reader)
+               const ListReader& reader, bool may_sort_in_reader)
         : source_(source),
           options_(options),
-          fragments_(lists_with(options)),
-          pass_(source.pass(kernels::lists_cl, "lists.cl", *fragments_)),
-          sorts_(needs_sorting(source.frame().quality, reader)),
-          may_sort_in_reader_(!reader && sorts_),
+          sorts_(reader.needs_sorted),
+          may_sort_in_reader_(may_sort_in_reader),
           may_fix_capacity_(keeps_all()),
+          fragments_(lists_with(options)),
+          pass_(source.pass(kernels::lists_cl, "lists.cl", fragments_)),
+          reader_(kernel_of(reader)),
           longer_(source.device(), 1) {
         // What a sort keeps counts for --memory from the first frame.
-        if (sorts_ && source.frame().memory_bytes) fragments_->sort(&Node::key);
-        reader_.emplace(kernel_of(reader_of(source.frame().quality, reader)));
+        if (sorts_ && source.frame().memory_bytes) fragments_.sort(&Node::key);
     }
 
     void store() override {
         if (pool_ == Pool::measured) fix_capacity();
-        const auto draw = [this] { source_.draw(pass_, *fragments_); };
+        const auto draw = [this] { source_.draw(pass_, fragments_); };
         if (pool_ == Pool::fixed)
-            built_ = fragments_->build_async(draw);
+            built_ = fragments_.build_async(draw);
         else
-            fragments_->build(draw);
+            fragments_.build(draw);
     }
 
     void resolve() override {
         if (pool_ == Pool::fixed && unsorted_reader_) {
-            source_.run_on_screen(*unsorted_reader_, *fragments_, longer_);
+            source_.run_on_screen(*unsorted_reader_, fragments_, longer_);
             longer_read_ = longer_.download_async();
             return;
         }
-        if (sorts_) fragments_->sort(&Node::key);
-        source_.run_on_screen(*reader_, *fragments_);
+        if (sorts_) fragments_.sort(&Node::key);
+        source_.run_on_screen(reader_, fragments_);
     }
 
     [[nodiscard]] bool finish_or_grow() override {
         if (pool_ != Pool::fixed) {
             if (may_fix_capacity_) {
-                lengths_ = fragments_->lengths();
+                lengths_ = fragments_.lengths();
                 pool_ = Pool::measured;
             }
             return true;
         }
         const bool fitted = built_.get().dropped == 0;
         if (fitted && !(unsorted_reader_ && longer_read_.get().front() != 0)) return true;
-        *fragments_ = lists_with(options_);
+        fragments_ = lists_with(options_);
         pool_ = Pool::growing;
         return false;
     }
 
-    [[nodiscard]] std::uint64_t device_bytes() const override { return fragments_->pool_bytes(); }
+    [[nodiscard]] std::uint64_t device_bytes() const override { return fragments_.pool_bytes(); }
     [[nodiscard]] std::optional<cellist::Lengths> lengths() const override {
         if (!keeps_all()) return {};
-        return fragments_->lengths();
+        return fragments_.lengths();
     }
     [[nodiscard]] std::optional<StoredDepths> depths() const override {
         if (!keeps_all()) return {};
-        const cellist::HostLists<Node> lists = fragments_->download();
+        const cellist::HostLists<Node> lists = fragments_.download();
         StoredDepths stored{{lists.offsets().begin(), lists.offsets().end()}, {}};
         for (const Node& node : lists.records())
             stored.depths.push_back(source_.layout().depth_of(node.key, source_.features()));
@@ -129,8 +118,8 @@ private:
         const std::uint64_t longest = more(lengths_.longest);
         try {
             // The old pool goes first, so that the device never holds both.
-            *fragments_ = lists_with(options_);
-            *fragments_ = lists_with(options);
+            fragments_ = lists_with(options_);
+            fragments_ = lists_with(options);
         } catch (const cellist::Error&) {
             may_fix_capacity_ = false;
             pool_ = Pool::growing;
@@ -138,8 +127,7 @@ private:
         }
         if (may_sort_in_reader_ && longest <= sorted_in_reader_max)
             unsorted_reader_.emplace(kernel_of(blending_reader(
-                source_.frame().quality,
-                define("OIT_SORTED", static_cast<std::uint32_t>(std::bit_ceil(longest + 1))))));
+                source_.frame().quality, false, define("OIT_SORTED", std::bit_ceil(longest + 1)))));
         else
             unsorted_reader_.reset();
         longer_.fill(0);
@@ -151,18 +139,18 @@ private:
     }
 
     [[nodiscard]] cellist::Kernel kernel_of(const ListReader& reader) const {
-        return source_.screen_kernel(reader.text, reader.file_name, reader.kernel, *fragments_);
+        return source_.screen_kernel(reader.text, reader.file_name, reader.kernel, fragments_);
     }
 
     FragmentSource& source_;
-    cellist::ListsOptions options_;
-    std::optional<cellist::Lists<Node>> fragments_;
-    raster::Pass pass_;
+    const cellist::ListsOptions options_;
     const bool sorts_;
     const bool may_sort_in_reader_;
-    std::optional<cellist::Kernel> reader_;
-    std::optional<cellist::Kernel> unsorted_reader_;  // of short lists in a fixed pool
     bool may_fix_capacity_;
+    cellist::Lists<Node> fragments_;
+    raster::Pass pass_;
+    cellist::Kernel reader_;
+    std::optional<cellist::Kernel> unsorted_reader_;  // of short lists in a fixed pool
     Pool pool_ = Pool::growing;
     cellist::Lengths lengths_ = {};    // of the last frame, if the pool is measured
     cellist::Buffer<cl_uint> longer_;  // not 0 if unsorted_reader_ met a list that is too long
@@ -170,19 +158,51 @@ private:
     cellist::Pending<std::vector<cl_uint>> longer_read_;
 };
 
+template <cellist::Storage storage>
+std::unique_ptr<Method> make(FragmentSource& source) {
+    return make_list_method(source, {.storage = storage});
+}
+
+const MethodRegistration linked({.name = "linked",
+                                 .summary = "a linked list for each pixel (Yang et al. 2010)",
+                                 .position = 10,
+                                 .exact = true,
+                                 .cuts = true,
+                                 .refusal = refuses_nothing,
+                                 .make = make<cellist::Storage::linked>,
+                                 .bound = bound_of_layers});
+
+const MethodRegistration counted({.name = "counted",
+                                  .summary = "contiguous lists, in two passes (prefix sums)",
+                                  .position = 20,
+                                  .exact = true,
+                                  .refusal = refuses_nothing,
+                                  .make = make<cellist::Storage::counted>,
+                                  .bound = bound_of_layers,
+                                  .passes = two_passes});
+
+const MethodRegistration fixed(
+    {.name = "fixed",
+     .summary = "fixed slots for each pixel, up to the longest list (FreePipe, Liu et al. 2010)",
+     .position = 30,
+     .exact = true,
+     .refusal = refuses_nothing,
+     .make = make<cellist::Storage::fixed>,
+     .bound = bound_of_layers});
+
 }  // namespace
 
 std::unique_ptr<Method> make_list_method(FragmentSource& source,
                                          const cellist::ListsOptions& options,
-                                         std::optional<ListReader> reader) {
-    const Quality& quality = source.frame().quality;
+                                         const std::optional<ListReader>& other_reader) {
+    const ListReader reader = other_reader ? *other_reader : first_reader(source.frame().quality);
     if (source.frame().memory_bytes && options.overflow == cellist::Overflow::grow)
-        return make_list_slices(source, options, reader_of(quality, reader),
-                                needs_sorting(quality, reader));
-    return with_node_type(source.layout().words,
-                          [&]<class Node>(const Node*) -> std::unique_ptr<Method> {
-                              return std::make_unique<ListMethod<Node>>(source, options, reader);
-                          });
+        return make_list_slices(source, options, reader);
+    const bool may_sort_in_reader = !other_reader && reader.needs_sorted;
+    return with_node_type(
+        source.layout().words, [&]<class Node>(const Node*) -> std::unique_ptr<Method> {
+            return std::make_unique<ListMethod<Node>>(source, options, reader, may_sort_in_reader);
+        });
 }
 
 }  // namespace oit

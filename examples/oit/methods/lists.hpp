@@ -10,18 +10,19 @@
 
 namespace oit {
 
-/// What reads sorted lists: a kernel whose parameters are the lists and OIT_SCREEN.
+/// What reads lists: a kernel whose parameters are the lists and OIT_SCREEN.
 struct ListReader {
     std::string text;
     std::string file_name;
     std::string kernel;
+    bool needs_sorted = true;  ///< lists are sorted before it runs
 };
 
 /// The method that keeps fragments in cellist::Lists with these options, and blends them nearest
 /// first; or leaves that to another reader. Under Frame::memory_bytes, a slice of the pixels at a
 /// time.
-[[nodiscard]] std::unique_ptr<Method> make_list_method(FragmentSource& source,
-                                                       const cellist::ListsOptions& options,
-                                                       std::optional<ListReader> reader = {});
+[[nodiscard]] std::unique_ptr<Method> make_list_method(
+    FragmentSource& source, const cellist::ListsOptions& options,
+    const std::optional<ListReader>& reader = {});
 
 }  // namespace oit
