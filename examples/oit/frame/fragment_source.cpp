@@ -214,18 +214,16 @@ cellist::Source FragmentSource::screen_source(std::string_view source,
 }
 
 std::uint64_t FragmentSource::device_bytes() const {
+    using raster::bytes_of;
     std::uint64_t bytes = geometry_.device_bytes() + projection_.device_bytes() +
-                          transparent_.device_bytes() + materials_.size() * sizeof(Material) +
-                          image_.size() * sizeof(cl_float4);
-    if (features_.opacities) bytes += opacities_.size() * sizeof(cl_float);
-    if (features_.tints) bytes += tints_.size() * sizeof(cl_float);
-    if (sample_image_) bytes += sample_image_->size() * sizeof(cl_float4);
+                          transparent_.device_bytes() + bytes_of(materials_, image_);
+    if (features_.opacities) bytes += bytes_of(opacities_);
+    if (features_.tints) bytes += bytes_of(tints_);
+    if (sample_image_) bytes += bytes_of(*sample_image_);
     if (!opaque_) return bytes;
-    bytes +=
-        opaque_->depth_bits.size() * sizeof(cl_uint) + opaque_->colour.size() * sizeof(cl_float4);
+    bytes += bytes_of(opaque_->depth_bits, opaque_->colour);
     if (opaque_->passes)
-        bytes += opaque_->passes->triangles.device_bytes() +
-                 opaque_->passes->owners.size() * sizeof(cl_uint);
+        bytes += opaque_->passes->triangles.device_bytes() + bytes_of(opaque_->passes->owners);
     return bytes;
 }
 

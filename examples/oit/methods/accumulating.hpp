@@ -25,9 +25,7 @@ public:
     explicit AccumulatingMethod(FragmentSource& source);
 
     void resolve() override { source_.run_on_screen(resolve_, sums_); }
-    [[nodiscard]] std::uint64_t device_bytes() const override {
-        return sums_.size() * sizeof(cl_long);
-    }
+    [[nodiscard]] std::uint64_t device_bytes() const override { return raster::bytes_of(sums_); }
 
 protected:
     FragmentSource& source_;

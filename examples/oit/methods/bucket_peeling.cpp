@@ -70,9 +70,7 @@ public:
     void resolve() override { source_.run_on_screen(finish_, state_); }
 
     [[nodiscard]] std::uint64_t device_bytes() const override {
-        return begin_.size() * sizeof(cl_ulong) + range_.size() * sizeof(Range) +
-               keys_.size() * sizeof(cl_ulong) + counts_.size() * sizeof(cl_uint) +
-               nodes_.size() * sizeof(cl_uint) + state_.size() * sizeof(cl_float);
+        return raster::bytes_of(begin_, range_, keys_, counts_, nodes_, state_);
     }
 
 private:

@@ -48,8 +48,7 @@ public:
     void resolve() override { source_.run_on_screen(finish_, front_, back_); }
 
     [[nodiscard]] std::uint64_t device_bytes() const override {
-        return (current_.size() + next_.size()) * sizeof(Keys) + nodes_.size() * sizeof(cl_uint) +
-               (front_.size() + back_.size()) * sizeof(cl_float);
+        return raster::bytes_of(current_, next_, nodes_, front_, back_);
     }
 
 private:

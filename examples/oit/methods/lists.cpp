@@ -159,35 +159,36 @@ private:
 };
 
 template <cellist::Storage storage>
-std::unique_ptr<Method> make(FragmentSource& source) {
+std::unique_ptr<Method> make_lists(FragmentSource& source) {
     return make_list_method(source, {.storage = storage});
 }
 
-const MethodRegistration linked({.name = "linked",
-                                 .summary = "a linked list for each pixel (Yang et al. 2010)",
-                                 .position = 10,
-                                 .exact = true,
-                                 .cuts = true,
-                                 .refusal = refuses_nothing,
-                                 .make = make<cellist::Storage::linked>,
-                                 .bound = bound_of_layers});
+const MethodRegistration linked_method(
+    {.name = "linked",
+     .summary = "a linked list for each pixel (Yang et al. 2010)",
+     .position = 10,
+     .exact = true,
+     .cuts = true,
+     .refusal = refuses_nothing,
+     .make = make_lists<cellist::Storage::linked>,
+     .bound = bound_of_layers});
 
-const MethodRegistration counted({.name = "counted",
-                                  .summary = "contiguous lists, in two passes (prefix sums)",
-                                  .position = 20,
-                                  .exact = true,
-                                  .refusal = refuses_nothing,
-                                  .make = make<cellist::Storage::counted>,
-                                  .bound = bound_of_layers,
-                                  .passes = two_passes});
+const MethodRegistration counted_method({.name = "counted",
+                                         .summary = "contiguous lists, in two passes (prefix sums)",
+                                         .position = 20,
+                                         .exact = true,
+                                         .refusal = refuses_nothing,
+                                         .make = make_lists<cellist::Storage::counted>,
+                                         .bound = bound_of_layers,
+                                         .passes = two_passes});
 
-const MethodRegistration fixed(
+const MethodRegistration fixed_method(
     {.name = "fixed",
      .summary = "fixed slots for each pixel, up to the longest list (FreePipe, Liu et al. 2010)",
      .position = 30,
      .exact = true,
      .refusal = refuses_nothing,
-     .make = make<cellist::Storage::fixed>,
+     .make = make_lists<cellist::Storage::fixed>,
      .bound = bound_of_layers});
 
 }  // namespace

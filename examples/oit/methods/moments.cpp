@@ -26,8 +26,7 @@ public:
         source_.draw(add_, moments_, nearest_, sums_);
     }
     [[nodiscard]] std::uint64_t device_bytes() const override {
-        return AccumulatingMethod::device_bytes() + moments_.size() * sizeof(cl_long) +
-               nearest_.size() * sizeof(cl_uint);
+        return AccumulatingMethod::device_bytes() + raster::bytes_of(moments_, nearest_);
     }
 
 private:

@@ -38,8 +38,7 @@ public:
     void resolve() override { source_.run_on_screen(finish_, state_); }
 
     [[nodiscard]] std::uint64_t device_bytes() const override {
-        return (current_.size() + next_.size()) * sizeof(cl_ulong) +
-               nodes_.size() * sizeof(cl_uint) + state_.size() * sizeof(cl_float);
+        return raster::bytes_of(current_, next_, nodes_, state_);
     }
 
 private:

@@ -34,7 +34,7 @@ public:
         source_.draw(add_, depths_, sums_);
     }
     [[nodiscard]] std::uint64_t device_bytes() const override {
-        return AccumulatingMethod::device_bytes() + depths_.size() * sizeof(cl_uint);
+        return AccumulatingMethod::device_bytes() + raster::bytes_of(depths_);
     }
 
 private:

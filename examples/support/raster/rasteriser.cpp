@@ -158,11 +158,6 @@ Geometry::Geometry(const cellist::Device& device, std::span<const support::Mesh*
       normals_(device, floats_of(meshes, &support::Mesh::normals)),
       indices_(device, indices_of(meshes)) {}
 
-std::uint64_t Geometry::device_bytes() const {
-    return (positions_.size() + normals_.size()) * sizeof(cl_float) +
-           indices_.size() * sizeof(cl_uint);
-}
-
 RasterInstance instance_of(const Placed& placed, const View& view, cl_uint eye) {
     RasterInstance instance{};
     set_row(instance.row_x, view.row_x, placed.to_world);
@@ -258,11 +253,6 @@ void Projection::move(std::span<const Placed> placed, std::span<const View> view
     views_.upload_async(views).wait();
 }
 
-std::uint64_t Projection::device_bytes() const {
-    return views_.size() * sizeof(View) + instances_.size() * sizeof(RasterInstance) +
-           batches_.size() * sizeof(RasterBatch) + vertices_.size() * sizeof(RasterVertex);
-}
-
 // ---- Triangles -------------------------------------------------------------------------------
 
 std::vector<RasterBatch> Projection::triangle_batches(std::span<const std::size_t> chosen) const {
@@ -298,11 +288,6 @@ bool Triangles::finish_or_grow() {
     if (counts.blocks > blocks_.size())
         blocks_ = cellist::Buffer<RasterBlock>(device_, counts.blocks);
     return *all_fitted_;
-}
-
-std::uint64_t Triangles::device_bytes() const {
-    return batches_.size() * sizeof(RasterBatch) + queue_.size() * sizeof(RasterTriangle) +
-           blocks_.size() * sizeof(RasterBlock) + counts_.size() * sizeof(RasterCounts);
 }
 
 }  // namespace raster

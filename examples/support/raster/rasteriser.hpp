@@ -16,6 +16,12 @@
 
 namespace raster {
 
+/// The size of buffers.
+template <class... T>
+[[nodiscard]] std::uint64_t bytes_of(const cellist::Buffer<T>&... buffers) {
+    return (std::uint64_t{0} + ... + (buffers.size() * sizeof(T)));
+}
+
 /// Meshes on the device, one after the other.
 class Geometry {
 public:
@@ -33,7 +39,9 @@ public:
     [[nodiscard]] const cellist::Buffer<cl_float>& normals() const { return normals_; }
     /// 3 a triangle, of vertices of all meshes.
     [[nodiscard]] const cellist::Buffer<cl_uint>& indices() const { return indices_; }
-    [[nodiscard]] std::uint64_t device_bytes() const;
+    [[nodiscard]] std::uint64_t device_bytes() const {
+        return bytes_of(positions_, normals_, indices_);
+    }
 
 private:
     std::vector<Part> parts_;
@@ -121,7 +129,9 @@ public:
     }
 
     [[nodiscard]] const cellist::Buffer<View>& views() const { return views_; }
-    [[nodiscard]] std::uint64_t device_bytes() const;
+    [[nodiscard]] std::uint64_t device_bytes() const {
+        return bytes_of(views_, instances_, batches_, vertices_);
+    }
 
 private:
     friend class Triangles;
@@ -169,7 +179,9 @@ public:
             capacity_of(blocks_));
     }
 
-    [[nodiscard]] std::uint64_t device_bytes() const;
+    [[nodiscard]] std::uint64_t device_bytes() const {
+        return bytes_of(batches_, queue_, blocks_, counts_);
+    }
 
 private:
     // Runs a kernel whose last parameters are RASTER_SCENE.
