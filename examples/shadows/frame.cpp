@@ -141,21 +141,23 @@ std::string pass_source(std::string_view pass) {
 }
 
 std::string kernel_source() {
-    return grid::with_queries(std::string(kernels::light_clh) +
-                              std::string(kernels::indirect_cl) + std::string(kernels::show_cl));
+    return grid::with_queries(std::string(kernels::light_clh) + std::string(kernels::indirect_cl) +
+                              std::string(kernels::show_cl));
 }
 
 Gather gather_of(const Settings& s) {
     if (s.map % s.samples != 0 || s.samples % s.turns != 0)
-        throw support::InputError("samples must divide the light's map, and turns the samples: " +
-                                  std::to_string(s.map) + ", " + std::to_string(s.samples) + ", " +
-                                  std::to_string(s.turns));
+        throw support::InputError(
+            "samples must divide the light's map, and turns the samples: " + std::to_string(s.map) +
+            ", " + std::to_string(s.samples) + ", " + std::to_string(s.turns));
     return {.width = s.width,
             .height = s.height,
             .map_side = s.map,
             .samples = s.samples,
             .scale = s.scale,
             .turns = s.turns,
+            .first_row = 0,
+            .rows = 0,
             .bias = bias,
             .least_distance = least_distance};
 }
@@ -208,8 +210,8 @@ void SurfaceView::move(const std::vector<raster::Placed>& placed, const raster::
 }
 
 void SurfaceView::draw(raster::Pass& nearest, raster::Pass& surface, cellist::Kernel& clear,
-                       const raster::Geometry& geometry,
-                       const cellist::Buffer<PlacedMesh>& placed, const LightSource& from) {
+                       const raster::Geometry& geometry, const cellist::Buffer<PlacedMesh>& placed,
+                       const LightSource& from) {
     projection_.transform();
     do {
         triangles_.bin();
@@ -261,19 +263,22 @@ Renderer::Renderer(const cellist::Device& device, const Scene& scene, const Sett
       light_(device, setup_, geometry_, placed_, light_view(scene.light, gather_.map_side)),
       blockers_(device, blockers_of(scene, geometry_, !simplified_.empty())),
       grid_([&] {
-          const auto triangles = world_triangles(scene, pointers(scene.meshes, simplified_),
-                                                 !simplified_.empty());
-          return std::make_unique<grid::TriangleGrid>(
-              device, triangles, grid::cells_around(triangles, settings.grid), settings.storage);
+          const auto triangles =
+              world_triangles(scene, pointers(scene.meshes, simplified_), !simplified_.empty());
+          const grid::GridCells cells =
+              scene.move
+                  ? grid::cells_in_box(scene.low, scene.high, settings.grid, triangles.size())
+                  : grid::cells_around(triangles, settings.grid);
+          return std::make_unique<grid::TriangleGrid>(device, triangles, cells, settings.storage);
       }()),
       rays_(std::make_unique<grid::Rays>(device, *grid_)),
       emitters_(device, light_.surfaces().size()),
       a_(device, pixels_of(gather_)),
       b_(device, static_cast<std::size_t>(b_width()) * static_cast<std::size_t>(b_height())),
-      segments_(device, std::min(b_.size(), static_cast<std::size_t>(b_width()) *
-                                                static_cast<std::size_t>(
-                                                    batch_rows(gather_, b_width()))) *
-                            rays_per_pixel(gather_)),
+      segments_(device,
+                std::min(b_.size(), static_cast<std::size_t>(b_width()) *
+                                        static_cast<std::size_t>(batch_rows(gather_, b_width()))) *
+                    rays_per_pixel(gather_)),
       blocked_(device, segments_.size()),
       ray_counts_(device, 2),
       picture_(device, a_.size()),
@@ -330,7 +335,8 @@ void Renderer::gather_blocked(PassTimes* times) {
     for (int row = 0; row < b_height(); row += batch.rows) {
         batch.first_row = row;
         batch.rows = std::min(batch_rows(gather_, b_width()), b_height() - row);
-        const auto places = static_cast<std::size_t>(b_width()) * static_cast<std::size_t>(batch.rows);
+        const auto places =
+            static_cast<std::size_t>(b_width()) * static_cast<std::size_t>(batch.rows);
         make_rays_.run(cellist::Range::padded(places * rays_per_pixel(gather_), 64),
                        eye_.surfaces(), emitters_, batch, segments_);
         if (times) times->end("rays of B");
@@ -350,8 +356,8 @@ FrameCounts Renderer::counts() const {
 std::vector<cl_uint> Renderer::passed_entries(const Scene& scene) {
     cellist::Buffer<cl_uint> passed(device_, a_.size());
     cellist::Kernel count = kernel("count_passed_entries");
-    grid_->run(count, cellist::Range::padded(passed.size(), 64), eye_.surfaces(),
-               source_of(scene), gather_, passed);
+    grid_->run(count, cellist::Range::padded(passed.size(), 64), eye_.surfaces(), source_of(scene),
+               gather_, passed);
     return passed.download();
 }
 

@@ -21,12 +21,12 @@ namespace shadows {
 struct Settings {
     int width = 1024;
     int height = 768;
-    int map = 512;      ///< texels of the light's map along each axis
-    int samples = 8;    ///< of them along each axis that send indirect light; divides `map`
-    int scale = 4;      ///< pixels of the picture for each one of buffer B, along each axis
-    int turns = 2;      ///< along each axis: neighbours in B share out the samples; divides `samples`
-    int grid = 0;       ///< cells along the longest side, or 0 for as many as suit
-    int blockers = 0;   ///< cells of simplified blockers along their longest side, or 0 for none
+    int map = 512;    ///< texels of the light's map along each axis
+    int samples = 8;  ///< of them along each axis that send indirect light; divides `map`
+    int scale = 4;    ///< pixels of the picture for each one of buffer B, along each axis
+    int turns = 2;    ///< along each axis: neighbours in B share out the samples; divides `samples`
+    int grid = 0;     ///< cells along the longest side, or 0 for as many as suit
+    int blockers = 0;  ///< cells of simplified blockers along their longest side, or 0 for none
     cellist::Storage storage = cellist::Storage::linked;
 };
 
@@ -99,7 +99,9 @@ public:
     [[nodiscard]] const cellist::Buffer<Emitter>& emitters() const { return emitters_; }
     [[nodiscard]] const grid::TriangleGrid& grid() const { return *grid_; }
     [[nodiscard]] const Gather& gather() const { return gather_; }
-    [[nodiscard]] int b_width() const { return (gather_.width + gather_.scale - 1) / gather_.scale; }
+    [[nodiscard]] int b_width() const {
+        return (gather_.width + gather_.scale - 1) / gather_.scale;
+    }
     [[nodiscard]] int b_height() const {
         return (gather_.height + gather_.scale - 1) / gather_.scale;
     }

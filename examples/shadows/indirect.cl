@@ -13,7 +13,8 @@ kernel void place_blockers(global const Blocker* blockers, uint count,
     cellist_vec3 corner[3];
     for (int k = 0; k < 3; ++k) {
         const float4 p = (float4)(vload3(indices[3 * blockers[i].triangle + k], positions), 1.0f);
-        corner[k] = (cellist_vec3){dot(placed.row_x, p), dot(placed.row_y, p), dot(placed.row_z, p)};
+        corner[k] =
+            (cellist_vec3){dot(placed.row_x, p), dot(placed.row_y, p), dot(placed.row_z, p)};
     }
     const GridTriangle triangle = {corner[0], corner[1], corner[2]};
     triangles[i] = triangle;
@@ -40,8 +41,7 @@ kernel void make_emitters(global const Surface* lit, const LightSource light, co
         const float slope = light.is_spot ? rsqrt(1.0f + dot(across, across)) : 1.0f;
         const float received = texel * texel * slope * slope * slope * light_fade(light, image);
         const int part = side / gather.samples;
-        emitter.power =
-            surface.albedo * light.intensity * (received * (float)(part * part));
+        emitter.power = surface.albedo * light.intensity * (received * (float)(part * part));
         emitter.power.w = 0.0f;
     }
     emitters[i] = emitter;
@@ -89,8 +89,8 @@ static int b_sample(const Gather gather, int x, int y, int ray) {
 
 // Whether a sample lights a pixel of B at all.
 static int b_is_lit(const Surface surface, const Emitter emitter, const Gather gather) {
-    const float3 light = light_from(emitter, surface.position.xyz, surface.normal.xyz,
-                                    gather.least_distance);
+    const float3 light =
+        light_from(emitter, surface.position.xyz, surface.normal.xyz, gather.least_distance);
     return surface.position.w > 0.0f && light.x + light.y + light.z > 0.0f;
 }
 
@@ -161,20 +161,25 @@ static float3 b_blurred(global const Surface* seen, global const float4* b, cons
             const float2 d = fabs(convert_float2(at) - place) / (float)reach;
             const float3 apart = other.position.xyz - surface.position.xyz;
             const float along = fmax(dot(other.normal.xyz, surface.normal.xyz), 0.0f);
+            const float along_2 = along * along, along_4 = along_2 * along_2;
             const float off = dot(apart, surface.normal.xyz);
-            const float weight = fmax(1.0f - d.x, 0.0f) * fmax(1.0f - d.y, 0.0f) *
-                                     pow(along, 16.0f) *
-                                     exp(-off * off / (1e-8f + 0.01f * dot(apart, apart))) +
-                                 1e-9f;
+            const float square = dot(apart, apart) + 1e-8f;
+            const float flat = square / (square + 200.0f * off * off);
+            const float weight =
+                fmax(1.0f - d.x, 0.0f) * fmax(1.0f - d.y, 0.0f) * along_4 * along_4 * flat * flat +
+                1e-9f;
             sum += weight * b[at.y * size.x + at.x].xyz;
             weights += weight;
         }
     return weights > 0.0f ? sum / weights : (float3)(0.0f);
 }
 
-// The part of 3 x 3 texels of the shadow map around a point that the light reaches.
+// The part of 3 x 3 texels of the shadow map around a point that the light reaches. The point is
+// lifted by the size of these texels, so that a surface does not shade itself.
 static float light_reaches(global const ulong* depths, int side, const LightSource light,
-                           float3 point, float bias) {
+                           float3 point, float3 normal, float bias) {
+    const float distance = light.is_spot ? dot(point - light.position.xyz, light.axis.xyz) : 1.0f;
+    point += normal * (bias + 2.5f * light.side * distance / (float)side);
     const float2 image = light_image(light, point) * (float)side - 0.5f;
     const float depth = dot(point - light.position.xyz, light.axis.xyz) - bias;
     const int2 first = convert_int2(floor(image + 0.5f)) - 1;
@@ -205,10 +210,10 @@ kernel void compose(global const Surface* seen, global const float4* a, global c
         const float facing = dot(normal, towards);
         const float2 image = light_image(light, point);
         const int is_lit = facing > 0.0f && all(image > 0.0f) && all(image < 1.0f);
-        direct *= is_lit ? facing * light_fade(light, image) *
-                               light_reaches(shadow_map, shadow_side, light,
-                                             point + 2.0f * gather.bias * normal, gather.bias)
-                         : 0.0f;
+        direct *=
+            is_lit ? facing * light_fade(light, image) *
+                         light_reaches(shadow_map, shadow_side, light, point, normal, gather.bias)
+                   : 0.0f;
         hidden = b_blurred(seen, b, gather, surface, x, y);
         const float3 all_light = a[pixel].xyz;
         const float3 reflected = surface.albedo.xyz / M_PI_F;

@@ -29,10 +29,10 @@ struct Options {
 bool run(const Options& options) {
     const cellist::Device device = options.device.empty() ? cellist::Device::choose()
                                                           : cellist::Device::choose(options.device);
-    shadows::Scene scene = options.scene == "room"    ? shadows::make_room()
-                           : options.scene == "swarm" ? shadows::make_swarm(100'000)
-                                                      : shadows::make_mesh_room(
-                                                            support::load_mesh(options.scene));
+    shadows::Scene scene = options.scene == "room" ? shadows::make_room()
+                           : options.scene == "swarm"
+                               ? shadows::make_swarm(100'000)
+                               : shadows::make_mesh_room(support::load_mesh(options.scene));
     shadows::Renderer renderer(device, scene, options.settings);
     renderer.draw(scene);
     support::Least least;

@@ -106,7 +106,7 @@ Scene empty_room() {
     scene.light = {.position = {-0.1, 0.85, 0.7},
                    .target = {1.5, -0.25, -0.1},
                    .field_degrees = 62,
-                   .intensity = {9, 9, 8.5F}};
+                   .intensity = {24, 24, 23}};
     scene.eye = {0, 0.1, 4.1};
     scene.target = {0, -0.05, 0};
     scene.field_degrees = 36;
@@ -123,21 +123,23 @@ Scene make_room() {
                                .albedo = {0.8F, 0.8F, 0.8F},
                                .blocks = true});
     for (int bar = 0; bar < 4; ++bar)
-        scene.instances.push_back({.to_world = placed({0.25, -0.35, -0.8 + 0.4 * bar},
-                                                      {0.08, 1.3, 0.2}),
-                                   .albedo = {0.6F, 0.6F, 0.55F},
-                                   .blocks = true});
+        scene.instances.push_back(
+            {.to_world = placed({0.25, -0.35, -0.8 + 0.4 * bar}, {0.08, 1.3, 0.2}),
+             .albedo = {0.6F, 0.6F, 0.55F},
+             .blocks = true});
     return scene;
 }
 
 Scene make_swarm(std::size_t triangles) {
     Scene scene = empty_room();
     scene.meshes.push_back(ring());
-    const std::size_t rings = std::max<std::size_t>(1, triangles / scene.meshes[1].triangles.size());
+    const std::size_t rings =
+        std::max<std::size_t>(1, triangles / scene.meshes[1].triangles.size());
     const std::size_t first = scene.instances.size();
     for (std::size_t i = 0; i < rings; ++i)
-        scene.instances.push_back(
-            {.mesh = 1, .albedo = {0.75F, 0.72F, 0.65F}, .blocks = true});
+        scene.instances.push_back({.mesh = 1, .albedo = {0.75F, 0.72F, 0.65F}, .blocks = true});
+    scene.low = -half_room;
+    scene.high = half_room;
     scene.move = [first](Scene& moved, double seconds) {
         const std::size_t count = moved.instances.size() - first;
         for (std::size_t i = 0; i < count; ++i) {
@@ -146,7 +148,8 @@ Scene make_swarm(std::size_t triangles) {
                 const double x = static_cast<double>(i + 1) * by;
                 return x - std::floor(x);
             };
-            const double angle = 2 * pi * (spread(0.618034) + (0.05 + 0.1 * spread(0.7549)) * seconds);
+            const double angle =
+                2 * pi * (spread(0.618034) + (0.05 + 0.1 * spread(0.7549)) * seconds);
             const double radius = 0.15 + 0.75 * std::sqrt(spread(0.5698));
             const glm::dvec3 centre(-0.3 + 0.95 * radius * std::cos(angle),
                                     -0.8 + 1.4 * spread(0.3247) + 0.05 * std::sin(3 * angle),
@@ -168,11 +171,11 @@ Scene make_mesh_room(support::Mesh mesh) {
     for (const glm::vec3& p : mesh.positions) lowest = std::min(lowest, double{p.y});
     constexpr double size = 0.85;
     scene.meshes.push_back(std::move(mesh));
-    scene.instances.push_back({.mesh = 1,
-                               .to_world = placed({-0.25, -half_room.y - size * lowest, -0.1},
-                                                  glm::dvec3(size)),
-                               .albedo = {0.75F, 0.75F, 0.72F},
-                               .blocks = true});
+    scene.instances.push_back(
+        {.mesh = 1,
+         .to_world = placed({-0.25, -half_room.y - size * lowest, -0.1}, glm::dvec3(size)),
+         .albedo = {0.75F, 0.75F, 0.72F},
+         .blocks = true});
     return scene;
 }
 

@@ -37,6 +37,8 @@ struct Scene {
     glm::dvec3 eye{0, 0, 3.5};
     glm::dvec3 target{0};
     double field_degrees = 40;
+    /// The box that moving blockers stay in.
+    glm::dvec3 low{0}, high{0};
     /// Moves instances, light or camera to where they are after so many seconds; may be empty.
     std::function<void(Scene&, double seconds)> move;
 };

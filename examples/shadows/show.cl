@@ -15,9 +15,8 @@ kernel void count_passed_entries(GRID_SCENE(scene), global const Surface* seen,
     if (i >= (uint)(gather.width * gather.height)) return;
     uint count = 0;
     GridWalk walk;
-    if (seen[i].position.w > 0.0f &&
-        grid_walk_begin(&walk, scene_cells, eye.position.xyz, seen[i].position.xyz, 1) ==
-            GRID_BEGINS)
+    if (seen[i].position.w > 0.0f && grid_walk_begin(&walk, scene_cells, eye.position.xyz,
+                                                     seen[i].position.xyz, 1) == GRID_BEGINS)
         for (int leave = 0;; leave = 1) {
             const uint cell =
                 grid_walk_find(&walk, scene_occupancy, grid_brick_count(scene_cells), leave);

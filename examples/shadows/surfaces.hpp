@@ -36,9 +36,9 @@ CELLIST_STRUCT(Emitter, position, normal, power);
 
 /// The light, as kernels take it.
 struct LightSource {
-    cl_float4 position;   ///< of a spot light, and 1
-    cl_float4 axis;       ///< where it shines, of length 1, and 0
-    cl_float4 right;      ///< of its image, of length 1
+    cl_float4 position;  ///< of a spot light, and 1
+    cl_float4 axis;      ///< where it shines, of length 1, and 0
+    cl_float4 right;     ///< of its image, of length 1
     cl_float4 down;
     cl_float4 intensity;  ///< of a spot light in W/sr, of a directional light in W/m2; linear RGB
     cl_float side;        ///< of the image: at distance 1, or in the world if it is directional
@@ -48,14 +48,14 @@ CELLIST_STRUCT(LightSource, position, axis, right, down, intensity, side, is_spo
 
 /// What the indirect light is computed from.
 struct Gather {
-    cl_int width, height;    ///< of the picture
-    cl_int map_side;         ///< texels of the reflective shadow map along each axis
-    cl_int samples;          ///< of its texels along each axis
-    cl_int scale;            ///< pixels of the picture for each one of buffer B, along each axis
-    cl_int turns;            ///< along each axis: neighbours of B take turns with the samples
-    cl_int first_row, rows;  ///< of B in this batch
-    cl_float bias;           ///< rays begin and end this far above the surfaces
-    cl_float least_distance; ///< light from nearer points counts as from there
+    cl_int width, height;     ///< of the picture
+    cl_int map_side;          ///< texels of the reflective shadow map along each axis
+    cl_int samples;           ///< of its texels along each axis
+    cl_int scale;             ///< pixels of the picture for each one of buffer B, along each axis
+    cl_int turns;             ///< along each axis: neighbours of B take turns with the samples
+    cl_int first_row, rows;   ///< of B in this batch
+    cl_float bias;            ///< rays begin and end this far above the surfaces
+    cl_float least_distance;  ///< light from nearer points counts as from there
 };
 CELLIST_STRUCT(Gather, width, height, map_side, samples, scale, turns, first_row, rows, bias,
                least_distance);

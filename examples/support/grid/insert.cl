@@ -64,8 +64,8 @@ static int grid_overlap_begin(GridOverlap* t, const GridCells cells, float3 a, f
     const float margin = 1.5f * GRID_MARGIN + reach * 0x1p-20f;
     const float3 ab_size = fabs(ab), ac_size = fabs(ac);
     const float slack = (fabs(t->n.x) + fabs(t->n.y) + fabs(t->n.z)) * margin +
-                        (ab_size.x + ab_size.y + ab_size.z) *
-                            (ac_size.x + ac_size.y + ac_size.z) * reach * 0x1p-20f;
+                        (ab_size.x + ab_size.y + ab_size.z) * (ac_size.x + ac_size.y + ac_size.z) *
+                            reach * 0x1p-20f;
     const float distance = -dot(t->n, a);
     t->under = distance + fmin(t->n.x, 0.0f) + fmin(t->n.y, 0.0f) + fmin(t->n.z, 0.0f) - slack;
     t->above = distance + fmax(t->n.x, 0.0f) + fmax(t->n.y, 0.0f) + fmax(t->n.z, 0.0f) + slack;
@@ -112,9 +112,9 @@ static void grid_insert_columns(CELLIST_LISTS(GridEntry, entries), const GridCel
             if (!t->is_row && !grid_cell_overlaps(t, x, y, z)) continue;
             const int3 cell = t->low + (int3)(x, y, z);
             const int3 brick = cell >> GRID_BRICK_BITS, within = cell & 3;
-            const uint list = (uint)((brick.z * bricks.y + brick.y) * bricks.x + brick.x) *
-                                  GRID_BRICK_CELLS +
-                              (uint)(within.x | within.y << 2 | within.z << 4);
+            const uint list =
+                (uint)((brick.z * bricks.y + brick.y) * bricks.x + brick.x) * GRID_BRICK_CELLS +
+                (uint)(within.x | within.y << 2 | within.z << 4);
             cellist_insert(entries, list, entry);
         }
     }
@@ -209,8 +209,7 @@ kernel void grid_find_empty(const GridCells cells, global ulong* occupancy) {
     ulong any = 0;
     for (int z = low.z; z < end.z; ++z)
         for (int y = low.y; y < end.y; ++y)
-            for (int x = low.x; x < end.x; ++x)
-                any |= occupancy[(z * bricks.y + y) * bricks.x + x];
+            for (int x = low.x; x < end.x; ++x) any |= occupancy[(z * bricks.y + y) * bricks.x + x];
     for (int z = low.z; z < end.z; ++z)
         for (int y = low.y; y < end.y; ++y)
             for (int x = low.x; x < end.x; ++x) {

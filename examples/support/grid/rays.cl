@@ -40,8 +40,8 @@ static void grid_trace_quickly(GRID_SCENE(scene), global const float4* segments,
             i = atomic_inc(&counters->next);
             if (i >= count) return;
             leave = 0;
-            const int begins = grid_ray_begin(&ray, scene_cells, segments[2 * i].xyz,
-                                              segments[2 * i + 1].xyz, 0);
+            const int begins =
+                grid_ray_begin(&ray, scene_cells, segments[2 * i].xyz, segments[2 * i + 1].xyz, 0);
             if (begins == GRID_INVALID) atomic_inc(&counters->invalid);
             if (begins == GRID_FAR) {
                 ray.undecided = 1;

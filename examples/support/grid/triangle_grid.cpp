@@ -79,9 +79,6 @@ constexpr std::string_view includes = "#include <cellist/lists.clh>\n#include <c
 }  // namespace
 
 GridCells cells_around(std::span<const GridTriangle> triangles, int longest) {
-    if (longest < 0 || longest > GRID_EXTENT_MAX)
-        throw support::InputError("a grid of " + std::to_string(longest) +
-                                  " cells: expected 1 to " + std::to_string(GRID_EXTENT_MAX));
     glm::dvec3 low(0), high(0);
     std::size_t count = 0;
     for (int k = 0; k < 3; ++k) {
@@ -99,8 +96,16 @@ GridCells cells_around(std::span<const GridTriangle> triangles, int longest) {
         low[k] = ends.low;
         high[k] = ends.high;
     }
+    return cells_in_box(low, high, longest, count);
+}
+
+GridCells cells_in_box(const glm::dvec3& low, const glm::dvec3& high, int longest,
+                       std::size_t triangles) {
+    if (longest < 0 || longest > GRID_EXTENT_MAX)
+        throw support::InputError("a grid of " + std::to_string(longest) +
+                                  " cells: expected 1 to " + std::to_string(GRID_EXTENT_MAX));
     const glm::dvec3 size = high - low;
-    if (longest == 0) longest = suitable_longest(size, count);
+    if (longest == 0) longest = suitable_longest(size, triangles);
     const double side = std::max({size.x, size.y, size.z});
     const glm::dvec3 farthest = glm::max(glm::abs(low), glm::abs(high));
     // Scales coordinates to 1 or less, except those beyond 2^100.
@@ -156,12 +161,13 @@ cellist::BuildReport TriangleGrid::build() {
         part_count_.fill(0);
         insert_.run(cellist::Range::padded(count, 64), entries_, cells_, triangles_, count,
                     corners_, parts_, room, part_count_);
-        insert_parts_.run(cellist::Range::padded(parts_groups_ * 64, 64), entries_, cells_, triangles_, parts_, room,
-                          part_count_);
+        insert_parts_.run(cellist::Range::padded(parts_groups_ * 64, 64), entries_, cells_,
+                          triangles_, parts_, room, part_count_);
     });
     find_occupied_.run(cellist::Range::padded(bricks_, 64), entries_, static_cast<cl_uint>(bricks_),
                        occupancy_);
-    find_empty_.run(cellist::Range::padded(cubes_of(cells_, GRID_BLOCK_BITS), 64), cells_, occupancy_);
+    find_empty_.run(cellist::Range::padded(cubes_of(cells_, GRID_BLOCK_BITS), 64), cells_,
+                    occupancy_);
     return report;
 }
 

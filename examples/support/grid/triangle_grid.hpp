@@ -48,6 +48,10 @@ CELLIST_STRUCT(GridPart, triangle, part, parts);
 /// as long without them. Throws InputError unless 0 <= longest <= GRID_EXTENT_MAX.
 [[nodiscard]] GridCells cells_around(std::span<const GridTriangle> triangles, int longest);
 
+/// The same for a box that so many triangles move in.
+[[nodiscard]] GridCells cells_in_box(const glm::dvec3& low, const glm::dvec3& high, int longest,
+                                     std::size_t triangles);
+
 /// Triangles in the cells of a 3D grid, for queries with segments (Yang, Hensley, Gruen, Thibieroz:
 /// "Real-Time Concurrent Linked List Construction on the GPU", EGSR 2010, section 4.2). Triangles
 /// may lie anywhere: those that reach out of the grid are in a list of their own, which slows down
