@@ -34,6 +34,24 @@ void add_switch(ProgramText& whole, const std::string& name, bool on) {
         "CELLIST_" + name);
 }
 
+/// The library's part of every program. Put together once: each new Kernel needs the whole text.
+const ProgramText& library_text() {
+    static const ProgramText library = [] {
+        ProgramText text;
+        text.add(kernels::view_h, "cellist/view.h");
+        text.add(kernels::warp_clh, "cellist/warp.clh");
+        text.add(kernels::threads_clh, "cellist/threads.clh");
+        text.add(kernels::allocation_clh, "cellist/allocation.clh");
+#define CELLIST_ADD_STORAGE(name, modes, unused, unused_too)                                       \
+    text.add(kernels::name##_clh, "cellist/" #name ".clh");
+        CELLIST_STORAGES(CELLIST_ADD_STORAGE, , )
+#undef CELLIST_ADD_STORAGE
+        text.add(kernels::lists_clh, "cellist/lists.clh");
+        return text;
+    }();
+    return library;
+}
+
 ProgramText whole_source(const Source& source, const detail::Definitions& definitions,
                          cl_uint modes, const DeviceInfo& device) {
     bool uses_glm = false;
@@ -53,15 +71,7 @@ ProgramText whole_source(const Source& source, const detail::Definitions& defini
     whole.add("#define CELLIST_MODES " + std::to_string(modes) + "u", "modes");
     add_switch(whole, "WARP_AGGREGATION", device.warp_aggregation);
     add_switch(whole, "ONE_THREAD_PER_WORK_GROUP", device.one_thread_per_work_group);
-    whole.add(kernels::view_h, "cellist/view.h");
-    whole.add(kernels::warp_clh, "cellist/warp.clh");
-    whole.add(kernels::threads_clh, "cellist/threads.clh");
-    whole.add(kernels::allocation_clh, "cellist/allocation.clh");
-#define CELLIST_ADD_STORAGE(name, modes, unused, unused_too)                                       \
-    whole.add(kernels::name##_clh, "cellist/" #name ".clh");
-    CELLIST_STORAGES(CELLIST_ADD_STORAGE, , )
-#undef CELLIST_ADD_STORAGE
-    whole.add(kernels::lists_clh, "cellist/lists.clh");
+    whole.add(library_text());
     whole.add(all.source(), structs);
     whole.add(show, "options");
     whole.add(text, source.file_name);

@@ -10,7 +10,6 @@ namespace cellist::detail {
 
 namespace {
 
-constexpr std::string_view blanks = " \t";
 constexpr std::string_view digits = "0123456789";
 constexpr std::string_view name_characters =
     "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ_abcdefghijklmnopqrstuvwxyz";
@@ -27,7 +26,9 @@ bool take(std::string_view& text, std::string_view expected) {
     return true;
 }
 
-void skip_blanks(std::string_view& text) { text.remove_prefix(run(text, 0, blanks).size()); }
+void skip_blanks(std::string_view& text) {
+    while (text.starts_with(' ') || text.starts_with('\t')) text.remove_prefix(1);
+}
 
 /// NAME if the text starts with `#include <cellist/NAME.clh>`, which is taken from it; else empty.
 std::string_view take_library_include(std::string_view& text) {
@@ -146,6 +147,13 @@ void ProgramText::add(std::string_view part, const std::string& file_name) {
     append("\n");
 }
 
+void ProgramText::add(const ProgramText& other) {
+    for (const Part& part : other.parts_)
+        parts_.push_back({lines_ + part.line, part.first, part.file_name});
+    text_ += other.text_;
+    lines_ += other.lines_;
+}
+
 std::string ProgramText::in_parts(std::string_view log) const {
     // Not where a part has such a name.
     const bool has_input = std::any_of(parts_.begin(), parts_.end(), [](const Part& part) {
@@ -217,8 +225,10 @@ std::string without_library_includes(std::string_view text, bool& uses_glm) {
             uses_glm = uses_glm || name == "glm";
             text = line;
         }
-        const std::size_t end = text.find_first_of("\r\n");
-        const std::size_t length = end == std::string_view::npos ? text.size() : end + 1;
+        // find_first_of() calls a function for each character, and every new Kernel comes here.
+        const auto end =
+            std::find_if(text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; });
+        const auto length = std::min(static_cast<std::size_t>(end - text.begin()) + 1, text.size());
         out += text.substr(0, length);
         text.remove_prefix(length);
     }

@@ -14,6 +14,7 @@ namespace cellist::detail {
 class ProgramText {
 public:
     void add(std::string_view part, const std::string& file_name);
+    void add(const ProgramText& other);
 
     [[nodiscard]] const std::string& text() const { return text_; }
 
