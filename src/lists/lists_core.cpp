@@ -34,6 +34,20 @@ private:
     std::unique_ptr<ListStorage> kept_;
 };
 
+/// The declaration of a whole record, as gather.cl takes it.
+std::string record_declaration(const RecordKernels& kernels) {
+    return "struct " + kernels.record().name + " value";
+}
+
+/// A kernel that reads lists. Lengths and copies are one program: who copies lists needs both, and
+/// a second program takes longer to compile than a second kernel.
+Kernel& reading_kernel(RecordKernels& kernels, const char* name, unsigned mode,
+                       const std::string& declaration, const std::string& member) {
+    return kernels.get(
+        {{"lengths.cl", kernels::lengths_cl}, {"gather.cl", kernels::gather_cl}}, name, mode,
+        "#define CELLIST_VALUE " + declaration + "\n#define CELLIST_MEMBER " + member + "\n");
+}
+
 }  // namespace
 
 ListsCore::ListsCore(std::shared_ptr<DeviceState> device, Definitions definitions,
@@ -177,7 +191,7 @@ Memory ListsCore::device_lengths(std::uint64_t words) const {
     Arguments arguments;
     add_to(arguments);
     arguments.add(lengths.cl());
-    kernels_->get({{"lengths.cl", kernels::lengths_cl}}, "cellist_lengths", mode())
+    reading_kernel(*kernels_, "cellist_lengths", mode(), record_declaration(*kernels_), "")
         .enqueue(cell_range(), arguments);
     return lengths;
 }
@@ -220,9 +234,7 @@ void ListsCore::gather(std::uint64_t begin, std::uint64_t end, const Memory& off
     arguments.add(static_cast<cl_uint>(end));
     arguments.add(offsets.cl());
     arguments.add(values);
-    kernels_
-        ->get({{"gather.cl", kernels::gather_cl}}, "cellist_gather", mode(),
-              "#define CELLIST_VALUE " + declaration + "\n#define CELLIST_MEMBER " + member + "\n")
+    reading_kernel(*kernels_, "cellist_gather", mode(), declaration, member)
         .enqueue(Range::padded(end - begin), arguments);
 }
 
@@ -244,7 +256,7 @@ void ListsCore::download(ReadbackFence& done, std::vector<cl_uint>& offsets,
                           std::uint64_t count) {
         if (count == 0) return;
         const Memory records(device_.state(), count, record_bytes, "download buffer");
-        gather(begin, end, words, records.cl(), "struct " + kernels_->record().name + " value", "");
+        gather(begin, end, words, records.cl(), record_declaration(*kernels_), "");
         done.add(records.read_later(target + first * record_bytes, count * record_bytes));
     };
     if (total <= most) return copy(0, shape_.cells(), 0, total);
