@@ -11,6 +11,9 @@ namespace cellist::detail {
 
 namespace {
 
+constexpr KernelFile classes_file{"sort_lists.cl", kernels::sort_lists_cl};
+constexpr KernelFile long_lists_file{"sort_long.cl", kernels::sort_long_cl};
+
 /// Nodes of the pool for one splitter of long linked lists; see sort_long.cl.
 constexpr unsigned segment_bits = 9;
 
@@ -175,12 +178,12 @@ cl::Event ListSorter::sort(ListStorage& storage, const SortKey& key, std::uint32
     if (!has_room_for(sort,
                       2 * most_left(sort, sort.plan.of_class(first_class(sort))) * sizeof(cl_uint)))
         return sort_in_place(storage, key);
-    sort_classes(sort);
+    const SortTuning tuning = sort_classes(sort);
     if (sort.count > 0) {
         sort_long(sort);
     } else {
         check_nodes(sort);
-        if (sort.linked) swap_pools(sort);
+        if (sort.linked) swap_pools(sort, classes_file, tuning);
     }
     return std::move(sort.done);
 }
@@ -238,8 +241,9 @@ std::size_t ListSorter::first_class(const Sort& sort) const {
     return index;
 }
 
-/// Sorts the lists that are not longer than those of the last class.
-void ListSorter::sort_classes(Sort& sort) {
+/// Sorts the lists that are not longer than those of the last class. Returns the tuning of the last
+/// class that it sorted.
+SortTuning ListSorter::sort_classes(Sort& sort) {
     clear_state();
     std::size_t index = first_class(sort);
     const std::size_t last = sort.plan.classes() - 1;
@@ -253,6 +257,7 @@ void ListSorter::sort_classes(Sort& sort) {
     }
     std::copy_n(sort.state.in_class, CELLIST_SORT_CLASSES, in_class_.begin());
     in_class_.back() += static_cast<cl_uint>(sort.count);
+    return sort.plan.of_class(index);
 }
 
 /// The most lists that a class can leave: in sound lists, only longer ones are left.
@@ -277,7 +282,7 @@ void ListSorter::sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage)
         arguments.add(back_buffer->nodes.cl());
     }
     const std::uint64_t together = (sort.count + tuning.lists - 1) / tuning.lists;
-    kernel({"sort_lists.cl", kernels::sort_lists_cl}, "cellist_sort_lists", sort, tuning)
+    kernel(classes_file, "cellist_sort_lists", sort, tuning)
         .enqueue(Range::padded(together * tuning.items, tuning.items == 1 ? 64 : tuning.items),
                  arguments, &sort.done);
     sort.cells = &longer;
@@ -320,7 +325,7 @@ void ListSorter::sort_long(Sort& sort) {
                               back_buffer->nodes.cl()));
     read_state(sort);
     check_nodes(sort);
-    if (sort.linked) swap_pools(sort);
+    if (sort.linked) swap_pools(sort, long_lists_file, tuning);
     merge(sort, long_lists, chunk_owners, *keys);
 }
 
@@ -371,16 +376,18 @@ void ListSorter::merge(Sort& sort, const Memory& long_lists, const Memory& chunk
 /// Enqueues a kernel of sort_long.cl.
 void ListSorter::run_long(Sort& sort, const char* name, const Range& range,
                           const Arguments& arguments) {
-    kernel({"sort_long.cl", kernels::sort_long_cl}, name, sort, sort.plan.of_long_lists())
+    kernel(long_lists_file, name, sort, sort.plan.of_long_lists())
         .enqueue(range, arguments, &sort.done);
 }
 
-/// Swaps the pools: all lists have moved to the back buffer.
-void ListSorter::swap_pools(Sort& sort) {
+/// Swaps the pools: all lists have moved to the back buffer. The file and the tuning are those of a
+/// program that has just run.
+void ListSorter::swap_pools(Sort& sort, const KernelFile& file, const SortTuning& tuning) {
     ListStorage& storage = sort.storage;
-    if (storage.stored() < storage.pool().nodes_count())
-        run_long(sort, "cellist_sort_allocate", Range::padded(storage.pool().counter_elements()),
-                 arguments_of(storage, static_cast<cl_uint>(storage.stored())));
+    if (storage.stored() < storage.pool().nodes_count()) kernel
+        (file, "cellist_sort_allocate", sort, tuning)
+            .enqueue(Range::padded(storage.pool().counter_elements()),
+                     arguments_of(storage, static_cast<cl_uint>(storage.stored())), &sort.done);
     storage.pool().swap_back_buffer();
 }
 

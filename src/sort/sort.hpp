@@ -54,7 +54,7 @@ private:
     bool select_top_k(Sort& sort, std::uint32_t top_k);
     [[nodiscard]] static std::pair<const cl::Buffer&, cl_uint> cells_of(const Sort& sort);
     void sort_in_place(Sort& sort);
-    void sort_classes(Sort& sort);
+    SortTuning sort_classes(Sort& sort);
     void sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage);
     void sort_long(Sort& sort);
     /// The keys of long lists, where their values must be kept: one buffer goes with the pool, the
@@ -67,7 +67,7 @@ private:
     [[nodiscard]] std::optional<Keys> keys_of(const Sort& sort) const;
     [[nodiscard]] bool has_room_for(const Sort& sort, std::uint64_t more_bytes) const;
     void run_long(Sort& sort, const char* name, const Range& range, const Arguments& arguments);
-    void swap_pools(Sort& sort);
+    void swap_pools(Sort& sort, const KernelFile& file, const SortTuning& tuning);
     [[nodiscard]] std::size_t first_class(const Sort& sort) const;
     [[nodiscard]] std::uint64_t most_left(const Sort& sort, const SortTuning& tuning) const;
 
