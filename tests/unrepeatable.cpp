@@ -74,14 +74,8 @@ constexpr cl_uint ways = 14;
 /// Ways that insert as many records into each cell, and reject as many.
 bool repeats_counts(cl_uint way) { return way <= 2; }
 
-TEST_CASE("a kernel that does not repeat itself ends in an error and writes into no other list",
-          "[oclgrind]") {
-    const std::vector<ListsOptions> all_options{
-        {.storage = Storage::counted},
-        {.storage = Storage::counted, .capacity_nodes = 100},
-        {.storage = Storage::counted, .overflow = Overflow::stop, .capacity_nodes = 60},
-        {.storage = Storage::counted, .overflow = Overflow::drop, .capacity_nodes = 60},
-        {.storage = Storage::counted, .overflow = Overflow::drop, .capacity_nodes = 25}};
+/// Requires that containers with these options report every way that does not repeat itself.
+void require_errors(const std::vector<ListsOptions>& all_options) {
     Buffer<cl_uint> runs(device(), 1);
     Buffer<cl_uint> written(device(), 1);
     Buffer<cl_uint> wrong(device(), 1);
@@ -127,8 +121,25 @@ TEST_CASE("a kernel that does not repeat itself ends in an error and writes into
             require_sound(lists, kept);
         }
     }
-    REQUIRE(thrown == 5 * 11);
+    REQUIRE(thrown == static_cast<int>(all_options.size()) * 11);
     std::cout << "unrepeatable: " << thrown << " builds ended in an error" << std::endl;
+}
+
+TEST_CASE("a kernel that does not repeat itself ends in an error and writes into no other list") {
+    require_errors(
+        {{.storage = Storage::counted},
+         {.storage = Storage::counted, .capacity_nodes = 100},
+         {.storage = Storage::counted, .overflow = Overflow::stop, .capacity_nodes = 60},
+         {.storage = Storage::counted, .overflow = Overflow::drop, .capacity_nodes = 60},
+         {.storage = Storage::counted, .overflow = Overflow::drop, .capacity_nodes = 25}});
+}
+
+// To the kernels, the policies and capacities differ only in whether the pool has room for all.
+TEST_CASE("a kernel that does not repeat itself ends in an error, with room for all or for a part",
+          "[oclgrind]") {
+    require_errors(
+        {{.storage = Storage::counted},
+         {.storage = Storage::counted, .overflow = Overflow::drop, .capacity_nodes = 25}});
 }
 
 TEST_CASE("the second pass decides which records are stored") {
