@@ -8,7 +8,7 @@
 namespace cellist::test {
 namespace {
 
-constexpr int cases = 10'000;
+constexpr int case_count = 10'000;
 
 /// Which cell the i-th record of a case goes to. The device computes the same from its arguments.
 enum Distribution : cl_uint {
@@ -19,9 +19,9 @@ enum Distribution : cl_uint {
     outside,
     in_turn
 };
-constexpr cl_uint distributions = 6;
+constexpr cl_uint distribution_count = 6;
 
-constexpr auto source = R"(
+constexpr auto insert_some_source = R"(
 #include <cellist/lists.clh>
 
 static uint scramble(uint x)
@@ -97,15 +97,15 @@ struct Input {
 };
 
 /// What the report of a build must say that does not throw.
-struct Expected {
+struct ExpectedReport {
     std::uint64_t demand = 0;  ///< records for cells of the shape
     std::uint64_t longest = 0;
     std::uint64_t rejected = 0;
     std::uint64_t fit = 0;  ///< records that a pool of the options has room for
 };
 
-Expected expect(const std::vector<std::uint64_t>& demands, const ListsOptions& options) {
-    Expected expected;
+ExpectedReport expect(const std::vector<std::uint64_t>& demands, const ListsOptions& options) {
+    ExpectedReport expected;
     for (std::size_t cell = 0; cell + 1 < demands.size(); ++cell) {
         expected.demand += demands[cell];
         expected.longest = std::max(expected.longest, demands[cell]);
@@ -175,7 +175,7 @@ std::uint64_t random_room(std::uint64_t exact, std::mt19937& random) {
 TEST_CASE("every record of random builds is stored, dropped or rejected", "[accounting]") {
     CELLIST_RANDOM(random, 200u);
     const Lists<Item> any(device(), {1});
-    Kernel kernel(device(), source, "insert_some", any);
+    Kernel kernel(device(), insert_some_source, "insert_some", any);
     constexpr std::array<std::uint64_t, 5> groups{1, 7, 32, 64, 256};
     constexpr std::array<Overflow, 3> policies{Overflow::grow, Overflow::stop, Overflow::drop};
     constexpr std::array<cl_uint, 5> counts{0, 1, 40, 500, 3000};
@@ -183,19 +183,19 @@ TEST_CASE("every record of random builds is stored, dropped or rejected", "[acco
     std::array<int, 3> by_storage{};
     int thrown = 0;
     int short_of_room = 0;
-    for (int i = 0; i < cases; ++i) {
+    for (int i = 0; i < case_count; ++i) {
         const Shape shape = random_shape(random);
         const auto cells = static_cast<cl_uint>(shape.cells());
-        const Input input{below(random, distributions), static_cast<cl_uint>(random()),
+        const Input input{below(random, distribution_count), static_cast<cl_uint>(random()),
                           below(random, counts[below(random, counts.size())] + 1)};
         const std::vector<std::uint64_t> demands = input.demands(cells);
         ListsOptions options;
         options.storage = all_storages[below(random, 3)];
         options.overflow = policies[below(random, 3)];
-        const Expected exact = expect(demands, options);
+        const ExpectedReport exact = expect(demands, options);
         options.capacity_nodes = random_room(exact.demand, random);
         options.slots = static_cast<std::uint32_t>(random_room(exact.longest, random));
-        const Expected expected = expect(demands, options);
+        const ExpectedReport expected = expect(demands, options);
         const std::uint64_t group = groups[below(random, groups.size())];
         Range range(group * (1 + below(random, 8)));
         range.local = {group, 1, 1};
@@ -229,11 +229,11 @@ TEST_CASE("every record of random builds is stored, dropped or rejected", "[acco
         ++by_storage[static_cast<std::size_t>(Storage{options.storage})];
         short_of_room += fits ? 0 : 1;
     }
-    std::cout << "accounting: " << cases << " cases: " << by_storage[0] << " linked, "
+    std::cout << "accounting: " << case_count << " cases: " << by_storage[0] << " linked, "
               << by_storage[1] << " counted, " << by_storage[2] << " fixed; " << short_of_room
               << " short of room, " << thrown << " of them thrown" << std::endl;
-    REQUIRE(std::min({by_storage[0], by_storage[1], by_storage[2]}) > cases / 4);
-    REQUIRE(thrown > cases / 20);
+    REQUIRE(std::min({by_storage[0], by_storage[1], by_storage[2]}) > case_count / 4);
+    REQUIRE(thrown > case_count / 20);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 namespace cellist::test {
 namespace {
 
-constexpr auto source = R"(
+constexpr auto allocating_source = R"(
 #include <cellist/lists.clh>
 
 static uint item_index(void)
@@ -99,7 +99,7 @@ void fill(const char* name, Storage storage, const Ranges& over, std::uint64_t c
                        .overflow = Overflow::drop,
                        .capacity_nodes = capacity,
                        .slots = static_cast<std::uint32_t>(capacity)});
-    Kernel kernel(device(), source, name, lists);
+    Kernel kernel(device(), allocating_source, name, lists);
     const BuildReport report = lists.build(kernel, over.range, run, each);
     const std::uint64_t attempted = std::uint64_t{over.items} * each;
     std::uint64_t stored = std::min(attempted, capacity);
@@ -151,7 +151,7 @@ TEST_CASE("straight and divergent inserts grow the pool to the exact demand") {
             INFO(name << ", " << each << " records each");
             Lists<Item> lists(device(), {50},
                               {.storage = storage, .capacity_nodes = 5000, .slots = 1});
-            Kernel kernel(device(), source, name, lists);
+            Kernel kernel(device(), allocating_source, name, lists);
             const BuildReport report = lists.build(kernel, 4096, cl_uint{3}, each);
             require_complete(report, std::uint64_t{4096} * each);
             if (each > 1) REQUIRE(report.passes == 2);
@@ -174,8 +174,8 @@ TEST_CASE("a pool that grows holds its capacity in one pass, whatever kernels in
         Lists<Item> lists(device(), {50}, {.capacity_nodes = capacity});
         std::vector<Kernel> inserting;
         for (const char* name : kernels)
-            inserting.emplace_back(device(), Source{.text = source, .options = options}, name,
-                                   lists);
+            inserting.emplace_back(device(), Source{.text = allocating_source, .options = options},
+                                   name, lists);
         const BuildReport report = lists.build([&] {
             for (Kernel& kernel : inserting) kernel.run(items, lists, cl_uint{3}, each);
         });
@@ -193,7 +193,7 @@ TEST_CASE("a pool that grows holds its capacity in one pass, whatever kernels in
 
 TEST_CASE("a node in the hand of a thread is free") {
     Lists<Item> lists(device(), {50}, {.capacity_nodes = 262'144});
-    Kernel insert(device(), source, "by_insert", lists);
+    Kernel insert(device(), allocating_source, "by_insert", lists);
     lists.build(insert, 100, cl_uint{3}, cl_uint{1});
     require_sound(lists, 100);
     // `found`: such nodes; the first cell is made to lead to one.

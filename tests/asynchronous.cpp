@@ -7,29 +7,12 @@
 namespace cellist::test {
 namespace {
 
-/// A kernel with its input on the device, which a pending build refers to.
-struct Scene {
-    Scene(const Lists<Item>& lists, const Inserts<Item>& inserts, const Device& on = device())
-        : count(static_cast<cl_uint>(inserts.size())),
-          cells(on, inserts.cells),
-          records(on, inserts.records),
-          kernel(on, insert_source("Item"), "insert_all", lists) {}
-    Pending<BuildReport> build_async(Lists<Item>& lists) {
-        return lists.build_async(kernel, Range::padded(count, 64), cells, records, count);
-    }
-
-    cl_uint count;
-    Buffer<cl_uint> cells;
-    Buffer<Item> records;
-    Kernel kernel;
-};
-
 TEST_CASE("a build that is started is finished by get(), after growing too") {
     CELLIST_EACH_STORAGE(storage);
     CELLIST_RANDOM(random, 240u);
     const Inserts<Item> inserts = random_inserts(4096, 50, random);
     Lists<Item> lists(device(), {50}, {.storage = storage, .capacity_nodes = 10, .slots = 1});
-    Scene scene(lists, inserts);
+    UploadedInserts scene(lists, inserts);
     for (int i = 0; i < 2; ++i) {
         Pending<BuildReport> pending = scene.build_async(lists);
         pending.event().wait();
@@ -47,7 +30,7 @@ TEST_CASE("what uses a container finishes its build") {
     CELLIST_RANDOM(random, 241u);
     const Inserts<Item> inserts = random_inserts(4096, 50, random);
     Lists<Item> lists(device(), {50}, {.storage = storage, .capacity_nodes = 10, .slots = 1});
-    Scene scene(lists, inserts);
+    UploadedInserts scene(lists, inserts);
     Pending<BuildReport> pending = scene.build_async(lists);
     SECTION("download") { require_same(lists.download(), oracle_of(inserts, 50)); }
     SECTION("sort") { lists.sort(&Item::key); }
@@ -72,7 +55,7 @@ TEST_CASE("under drop nothing waits for the report, and the lists are there") {
     Lists<Item> lists(
         device(), {50},
         {.storage = storage, .overflow = Overflow::drop, .capacity_nodes = 3000, .slots = 60});
-    Scene scene(lists, inserts);
+    UploadedInserts scene(lists, inserts);
     Kernel count(device(), R"(
 #include <cellist/lists.clh>
 kernel void count(CELLIST_LISTS(Item, lists), global uint* lengths)
@@ -107,7 +90,7 @@ TEST_CASE("an error of a pending build comes from the first use, and from get()"
     Lists<Item> lists(
         device(), {50},
         {.storage = storage, .overflow = Overflow::stop, .capacity_nodes = 100, .slots = 3});
-    Scene scene(lists, inserts);
+    UploadedInserts scene(lists, inserts);
     Pending<BuildReport> pending = scene.build_async(lists);
     REQUIRE_THROWS_AS(lists.sort(&Item::key), OverflowError);
     require_sound(lists, 0);
@@ -124,7 +107,7 @@ TEST_CASE("lists may go before their build is finished") {
     CELLIST_RANDOM(random, 244u);
     const Inserts<Item> inserts = random_inserts(4096, 50, random);
     Lists<Item> other(device(), {50}, {.storage = storage});
-    Scene scene(other, inserts);
+    UploadedInserts scene(other, inserts);
     for (const std::uint64_t capacity : {10u, 5000u}) {
         std::optional<Lists<Item>> lists(
             std::in_place, device(), Shape{50},
@@ -207,7 +190,7 @@ TEST_CASE("several containers are built at once without blocking") {
         for (const Storage second : all_storages) {
             Lists<Item> a(device(), {50}, {.storage = first, .capacity_nodes = 10});
             Lists<Item> b(device(), {40}, {.storage = second, .capacity_nodes = 10});
-            Scene scene(a, inserts);
+            UploadedInserts scene(a, inserts);
             auto pending = build_async(
                 [&] {
                     scene.kernel.run(4096, a, scene.cells, scene.records, scene.count);
@@ -241,7 +224,7 @@ TEST_CASE("what is enqueued waits for the events of another queue") {
 
     const Inserts<Item> inserts = random_inserts(4096, 50, random);
     Lists<Item> lists(own, {50}, {.storage = storage, .capacity_nodes = 10});
-    Scene scene(lists, Inserts<Item>(inserts), own);
+    UploadedInserts scene(lists, Inserts<Item>(inserts), own);
     scene.cells.fill(0xFFFFFFFFu);
     own.finish();
     // The cells are there only after the user event.

@@ -23,8 +23,8 @@ bool returns_before_the_device(const std::function<void()>& call) {
     return returned;
 }
 
-struct Scene {
-    explicit Scene(const ListsOptions& options) : lists(device(), {50}, options) {
+struct GatedBuild {
+    explicit GatedBuild(const ListsOptions& options) : lists(device(), {50}, options) {
         std::mt19937 random(280);
         inserts = random_inserts(4096, 50, random);
         cells.emplace(device(), inserts.cells);
@@ -88,7 +88,7 @@ struct Calls {
 
 TEST_CASE("under drop a build and all that reads it are enqueued at once") {
     CELLIST_EACH_STORAGE(storage);
-    Scene scene(
+    GatedBuild scene(
         {.storage = storage, .overflow = Overflow::drop, .capacity_nodes = 5000, .slots = 200});
     (void)scene.build_async().get();
     { const Calls compiled(scene.lists); }
@@ -107,7 +107,7 @@ TEST_CASE("under drop a build and all that reads it are enqueued at once") {
 
 TEST_CASE("what reads finished lists is enqueued at once") {
     CELLIST_EACH_STORAGE(storage);
-    Scene scene({.storage = storage});
+    GatedBuild scene({.storage = storage});
     (void)scene.build_async().get();
     { const Calls compiled(scene.lists); }
     std::optional<Calls> calls;
@@ -124,7 +124,7 @@ TEST_CASE("what reads finished lists is enqueued at once") {
 
 TEST_CASE("a validation that is asked for before a build ends is that of this build") {
     CELLIST_EACH_STORAGE(storage);
-    Scene scene(
+    GatedBuild scene(
         {.storage = storage, .overflow = Overflow::drop, .capacity_nodes = 3000, .slots = 60});
     Pending<BuildReport> first = scene.build_async();
     Pending<Validation> validation = scene.lists.validate_async();

@@ -46,23 +46,6 @@ void require_lists(Lists<Item>& lists, const Inserts<Item>& inserts) {
     REQUIRE(packed == std::vector<Item>(sorted.records().begin(), sorted.records().end()));
 }
 
-/// A kernel with its input on the device.
-struct Scene {
-    Scene(const Lists<Item>& lists, const Inserts<Item>& inserts)
-        : count(static_cast<cl_uint>(inserts.size())),
-          cells(device(), inserts.cells),
-          records(device(), inserts.records),
-          kernel(device(), insert_source("Item"), "insert_all", lists) {}
-    void insert(const Lists<Item>& lists) {
-        kernel.run(Range::padded(count, 64), lists, cells, records, count);
-    }
-
-    cl_uint count;
-    Buffer<cl_uint> cells;
-    Buffer<Item> records;
-    Kernel kernel;
-};
-
 const ListsOptions automatic{.storage = Storage::automatic};
 
 TEST_CASE("lists are complete in every build of a trial and after it") {
@@ -102,7 +85,7 @@ TEST_CASE("no build after the first needs more passes than its storage") {
     CELLIST_RANDOM(random, 271u);
     const Inserts<Item> inserts = random_inserts(100'000, 5000, random);
     Lists<Item> lists(device(), {5000}, automatic);
-    Scene scene(lists, inserts);
+    UploadedInserts scene(lists, inserts);
     const auto insert = [&] { scene.insert(lists); };
     REQUIRE(lists.build(insert).passes == 2);
     for (int i = 0; i < 14; ++i) {
@@ -133,7 +116,7 @@ TEST_CASE("every storage serves when it is chosen, and clear() empties it") {
     const Inserts<Item> inserts = random_inserts(4096, 50, random);
     Lists<Item> lists(device(), {50}, automatic);
     choose(lists, storage, 4096, longest_of(inserts, 50));
-    Scene scene(lists, inserts);
+    UploadedInserts scene(lists, inserts);
     const BuildReport report = lists.build([&] { scene.insert(lists); });
     require_complete(report, 4096);
     REQUIRE(report.passes == passes_of(storage, 4096));
@@ -154,8 +137,8 @@ TEST_CASE("a list that became too long for slots goes to another storage") {
     const bool asynchronous = GENERATE(false, true);
     Lists<Item> lists(device(), {2000}, automatic);
     choose(lists, Storage::fixed, even.size(), longest_of(even, 2000));
-    Scene even_scene(lists, even), uneven_scene(lists, uneven);
-    const auto build = [&](Scene& scene) {
+    UploadedInserts even_scene(lists, even), uneven_scene(lists, uneven);
+    const auto build = [&](UploadedInserts& scene) {
         const auto insert = [&] { scene.insert(lists); };
         return asynchronous ? lists.build_async(insert).get() : lists.build(insert);
     };
@@ -298,7 +281,7 @@ TEST_CASE("slots that would drop what the others keep are left") {
         device(), {50},
         {.storage = Storage::automatic, .overflow = overflow, .capacity_nodes = 1000, .slots = 20});
     choose(lists, Storage::fixed, 500, 20);
-    Scene scene(lists, inserts);
+    UploadedInserts scene(lists, inserts);
     SECTION("blocking") {
         const BuildReport report = lists.build([&] { scene.insert(lists); });
         require_complete(report, 530);
@@ -375,7 +358,7 @@ TEST_CASE(
     CELLIST_RANDOM(random, 280u);
     const Inserts<Item> inserts = random_inserts(4096, 50, random);
     Lists<Item> lists(device(), {50}, automatic), other(device(), {50}, automatic);
-    Scene scene(lists, inserts);
+    UploadedInserts scene(lists, inserts);
     const auto insert = [&] { scene.insert(lists); };
     const bool chosen = GENERATE(false, true);
     if (chosen) choose(lists, storage, 4096, longest_of(inserts, 50));
@@ -422,7 +405,7 @@ TEST_CASE("slices fit the budget") {
         device(), {50},
         {.storage = Storage::automatic, .capacity_nodes = 100, .budget_bytes = 10'000});
     choose(lists, storage, 400, 8);
-    Scene scene(lists, inserts);
+    UploadedInserts scene(lists, inserts);
     std::uint64_t stored = 0;
     int slices = 0;
     lists.build_slices([&] { scene.insert(lists); },
@@ -442,7 +425,7 @@ TEST_CASE("an exception in any build of a trial leaves an empty container, and t
     CELLIST_RANDOM(random, 282u);
     const Inserts<Item> inserts = random_inserts(4096, 50, random);
     Lists<Item> lists(device(), {50}, automatic);
-    Scene scene(lists, inserts);
+    UploadedInserts scene(lists, inserts);
     for (int i = 0; i < 15; ++i) {
         INFO("build " << i << ": " << lists.storage_reason());
         const auto error = error_of<std::runtime_error>([&] {

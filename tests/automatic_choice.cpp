@@ -14,7 +14,7 @@ using detail::Pattern;
 using detail::Profile;
 using detail::StorageTuner;
 
-constexpr std::uint64_t records = 100'000;
+constexpr std::uint64_t profile_records = 100'000;
 
 /// Times of a storage: of a build and of a read.
 struct Times {
@@ -31,7 +31,7 @@ StorageTuner::Container container(const ListsOptions& options = {}, std::uint64_
 /// Builds with these times to the end of the trial. Returns the storages that were built with, in
 /// order.
 std::vector<Storage> try_all(StorageTuner& tuner, const Times& times,
-                             std::uint64_t stored = records, std::uint64_t longest = 20) {
+                             std::uint64_t stored = profile_records, std::uint64_t longest = 20) {
     std::vector<Storage> tried;
     while (tuner.on_trial()) {
         REQUIRE(tried.size() < 12);
@@ -45,7 +45,8 @@ std::size_t count(const std::vector<Storage>& tried, Storage storage) {
     return static_cast<std::size_t>(std::count(tried.begin(), tried.end(), storage));
 }
 
-Profile profile_of(const Times& coherent, const Times& random, std::uint64_t of_records = records) {
+Profile profile_of(const Times& coherent, const Times& random,
+                   std::uint64_t of_records = profile_records) {
     Profile profile(of_records);
     for (const Storage storage : detail::choices) {
         profile.set_cost(storage, Pattern::coherent, coherent.of(storage));
@@ -95,7 +96,7 @@ TEST_CASE("a storage that is slow in its second build, too, can be chosen") {
         double seconds = 1e-3;
         // Where it takes one pass from the second build on, that allocates and compiles.
         if (tuner.storage() == Storage::counted) seconds = ++counted <= 2 ? 1 : 0.5e-3;
-        tuner.measured({{seconds, 1e-3}, records, 20});
+        tuner.measured({{seconds, 1e-3}, profile_records, 20});
     }
     REQUIRE(tuner.storage() == Storage::counted);
 }
@@ -113,16 +114,16 @@ TEST_CASE("neither the first build nor a disturbed one counts") {
         double seconds = storage == Storage::linked ? 1e-3 : 1.1e-3;
         if (storage == Storage::linked && builds == 0) seconds = 1;
         if (storage == Storage::linked && builds == 2) seconds = 1.5e-3;
-        tuner.measured({{seconds, 1e-3}, records, 20});
+        tuner.measured({{seconds, 1e-3}, profile_records, 20});
     }
     REQUIRE(tuner.storage() == Storage::linked);
 }
 
 TEST_CASE("builds of different numbers are compared by the record") {
     StorageTuner tuner(container(), {});
-    std::uint64_t stored = records;
+    std::uint64_t stored = profile_records;
     while (tuner.on_trial()) {
-        stored += records / 20;
+        stored += profile_records / 20;
         const double a_record = tuner.storage() == Storage::linked ? 1e-8 : 1.1e-8;
         tuner.measured({{a_record * static_cast<double>(stored), 0}, stored, 20});
     }
@@ -133,17 +134,17 @@ TEST_CASE("fixed is tried where its slots are at most four times the records, or
     const Times best_fixed{{2e-3, 2e-3}, {2e-3, 2e-3}, {1e-3, 1e-3}};
     SECTION("short lists") {
         StorageTuner tuner(container(), {});
-        try_all(tuner, best_fixed, records, 40);
+        try_all(tuner, best_fixed, profile_records, 40);
         REQUIRE(tuner.storage() == Storage::fixed);
         const ListsOptions options = tuner.options(Storage::fixed);
         REQUIRE(options.slots == 40u);
         // Heads and four slots for each record, and not much more.
-        REQUIRE(options.budget_bytes >= 40'000 + 12 * 4 * records);
-        REQUIRE(options.budget_bytes <= 40'000 + 12 * 4 * records + 100'000);
+        REQUIRE(options.budget_bytes >= 40'000 + 12 * 4 * profile_records);
+        REQUIRE(options.budget_bytes <= 40'000 + 12 * 4 * profile_records + 100'000);
     }
     SECTION("a long one") {
         StorageTuner tuner(container(), {});
-        try_all(tuner, best_fixed, records, 41);
+        try_all(tuner, best_fixed, profile_records, 41);
         REQUIRE(tuner.storage() != Storage::fixed);
         INFO(tuner.reason());
         REQUIRE(contains(tuner.reason(),
@@ -221,14 +222,15 @@ TEST_CASE("an excluded storage is left, for ever or until the next trial") {
     SECTION("in the trial, for ever") {
         StorageTuner tuner(container(), {});
         while (tuner.storage() == Storage::linked)
-            tuner.measured({best_counted.linked, records, 20});
+            tuner.measured({best_counted.linked, profile_records, 20});
         REQUIRE(tuner.exclude(Storage::counted, "left: no", StorageTuner::Exclusion::permanent) ==
                 Storage::linked);
         REQUIRE(tuner.storage() == Storage::fixed);
         try_all(tuner, best_counted);
         REQUIRE(tuner.storage() == Storage::fixed);
         REQUIRE(contains(tuner.reason(), "counted left: no"));
-        REQUIRE(count(another_trial(tuner, best_counted, 3 * records), Storage::counted) == 0);
+        REQUIRE(count(another_trial(tuner, best_counted, 3 * profile_records), Storage::counted) ==
+                0);
         REQUIRE(tuner.storage() == Storage::fixed);
     }
     SECTION("after it, until the next") {
@@ -240,7 +242,7 @@ TEST_CASE("an excluded storage is left, for ever or until the next trial") {
         REQUIRE(tuner.storage() == Storage::counted);
         REQUIRE_FALSE(tuner.on_trial());
         REQUIRE(contains(tuner.reason(), "fixed left: too long"));
-        another_trial(tuner, best_fixed, 3 * records);
+        another_trial(tuner, best_fixed, 3 * profile_records);
         REQUIRE(tuner.storage() == Storage::fixed);
     }
     SECTION("the first storage, before anything is measured") {
@@ -273,11 +275,11 @@ TEST_CASE("another trial follows when the records have doubled or halved, and ne
         return builds;
     };
     for (const auto& [stored, expected] :
-         std::vector<std::pair<std::uint64_t, bool>>{{records, false},
-                                                     {2 * records, false},
-                                                     {2 * records + 1, true},
-                                                     {records / 2, false},
-                                                     {records / 2 - 1, true},
+         std::vector<std::pair<std::uint64_t, bool>>{{profile_records, false},
+                                                     {2 * profile_records, false},
+                                                     {2 * profile_records + 1, true},
+                                                     {profile_records / 2, false},
+                                                     {profile_records / 2 - 1, true},
                                                      {0, true}}) {
         INFO(stored << " records");
         StorageTuner tuner(container(), {});
@@ -293,7 +295,7 @@ TEST_CASE("another trial follows when the records have doubled or halved, and ne
     StorageTuner tuner(container(), {});
     int on_trial = 0;
     for (int build = 0; build < 10'000; ++build) {
-        const std::uint64_t stored = build % 2 == 0 ? records : 10 * records;
+        const std::uint64_t stored = build % 2 == 0 ? profile_records : 10 * profile_records;
         if (tuner.on_trial()) {
             tuner.measured({times.of(tuner.storage()), stored, 20});
             ++on_trial;
@@ -337,18 +339,18 @@ TEST_CASE("a storage that is hopeless by the profile is not tried, where the pro
         REQUIRE(count(all, Storage::fixed) > 0);
         return count(all, Storage::counted) > 0;
     };
-    REQUIRE_FALSE(tried(3e-9, records));
-    REQUIRE_FALSE(tried(1.5e-9, records));
-    REQUIRE_FALSE(tried(5.5e-9, records));
+    REQUIRE_FALSE(tried(3e-9, profile_records));
+    REQUIRE_FALSE(tried(1.5e-9, profile_records));
+    REQUIRE_FALSE(tried(5.5e-9, profile_records));
     // Slower than the profile knows, or faster, or on fewer records.
-    REQUIRE(tried(20e-9, records));
-    REQUIRE(tried(0.5e-9, records));
-    REQUIRE(tried(3e-9, records / 9));
+    REQUIRE(tried(20e-9, profile_records));
+    REQUIRE(tried(0.5e-9, profile_records));
+    REQUIRE(tried(3e-9, profile_records / 9));
 }
 
 TEST_CASE("the reason names the figures") {
     StorageTuner tuner(container({.expected_reads = 2}), {});
-    try_all(tuner, {{4e-3, 0.4e-3}, {3.1e-3, 0.4e-3}, {9e-3, 1e-3}}, records, 900);
+    try_all(tuner, {{4e-3, 0.4e-3}, {3.1e-3, 0.4e-3}, {9e-3, 1e-3}}, profile_records, 900);
     INFO(tuner.reason());
     REQUIRE(tuner.reason() ==
             "counted: build 3.1 ms + 2 reads of 400 us = 3.9 ms for 100000 records; linked 4.8 ms; "

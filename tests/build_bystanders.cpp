@@ -9,7 +9,7 @@
 namespace cellist::test {
 namespace {
 
-constexpr auto source = R"(
+constexpr auto into_both_source = R"(
 #include <cellist/lists.clh>
 
 // One record into each container; `ways` has a bit for each that takes one.
@@ -22,8 +22,8 @@ kernel void into_both(CELLIST_LISTS(Item, first), CELLIST_LISTS(Item, second), u
 }
 )";
 
-struct Scene {
-    explicit Scene(Storage storage, Overflow overflow = Overflow::grow)
+struct TwoContainers {
+    explicit TwoContainers(Storage storage, Overflow overflow = Overflow::grow)
         : a(device(), {17}, options(storage, overflow)), b(device(), {4, 3}, options(storage)) {}
     static ListsOptions options(Storage storage, Overflow overflow = Overflow::grow) {
         return {.storage = storage, .overflow = overflow, .capacity_nodes = 2000, .slots = 100};
@@ -31,7 +31,7 @@ struct Scene {
     void run(cl_uint ways) { kernel.run(1000, a, b, ways); }
 
     Lists<Item> a, b;
-    Kernel kernel{device(), source, "into_both", a, b};
+    Kernel kernel{device(), into_both_source, "into_both", a, b};
 };
 
 void require_named(const Error& error) {
@@ -43,7 +43,7 @@ void require_named(const Error& error) {
 
 TEST_CASE("inserts into a container that is no part of the build are an error") {
     CELLIST_EACH_STORAGE(storage);
-    Scene scene(storage);
+    TwoContainers scene(storage);
     scene.b.build([&] { scene.run(2); });  // here a is only passed on
     const auto kept = scene.b.download().records().size();
     REQUIRE(kept == 1000);
@@ -66,7 +66,7 @@ TEST_CASE("inserts into a container that is no part of the build are an error") 
 TEST_CASE("a build that was started tells so in get()") {
     CELLIST_EACH_STORAGE(storage);
     for (const Overflow overflow : {Overflow::grow, Overflow::drop}) {
-        Scene scene(storage, overflow);
+        TwoContainers scene(storage, overflow);
         Pending<BuildReport> pending = scene.a.build_async(scene.kernel, 1000, scene.b, cl_uint{3});
         const Error error = error_of([&] { pending.get(); });
         if (storage == Storage::counted && overflow == Overflow::drop)
@@ -81,8 +81,8 @@ TEST_CASE("a build that was started tells so in get()") {
 
 TEST_CASE("all builds at once and builds in slices look as well") {
     CELLIST_EACH_STORAGE(storage);
-    Scene scene(storage);
-    Lists<Item> c(device(), {5}, Scene::options(storage));
+    TwoContainers scene(storage);
+    Lists<Item> c(device(), {5}, TwoContainers::options(storage));
     Kernel one(device(), insert_source("Item"), "insert_all", c);
     const Buffer<cl_uint> cells(device(), std::vector<cl_uint>{0});
     const Buffer<Item> records(device(), std::vector<Item>{{1.0f, 1}});
@@ -100,7 +100,7 @@ TEST_CASE("all builds at once and builds in slices look as well") {
 
 TEST_CASE("a build inside of another counts for its own containers, and hides nothing") {
     CELLIST_EACH_STORAGE(storage);
-    Scene scene(storage);
+    TwoContainers scene(storage);
     // b is built first, then read.
     require_complete(scene.a.build([&] {
         scene.b.build([&] { scene.kernel.run(10, scene.a, scene.b, cl_uint{2}); });
@@ -125,7 +125,7 @@ TEST_CASE("a build inside of another counts for its own containers, and hides no
 }
 
 TEST_CASE("a container that a build's kernels have read may go at once") {
-    Scene scene(Storage::linked);
+    TwoContainers scene(Storage::linked);
     for (const cl_uint ways : {1u, 3u})
         require_complete(scene.a.build([&] {
             Lists<Item> helper(device(), {7}, {.capacity_nodes = 10});

@@ -9,7 +9,7 @@
 namespace cellist::test {
 namespace {
 
-constexpr auto source = R"(
+constexpr auto insert_one_source = R"(
 #include <cellist/lists.clh>
 kernel void insert(CELLIST_LISTS(Item, lists))
 {
@@ -24,7 +24,7 @@ TEST_CASE("every way to build a container inside of its own build is refused") {
     INFO(name_of(storage));
     Lists<Item> lists(device(), {17}, {.storage = storage});
     Lists<Item> other(device(), {17});
-    Kernel insert(device(), source, "insert", lists, other);
+    Kernel insert(device(), insert_one_source, "insert", lists, other);
     const auto run = [&] { insert.run(1000, lists); };
     const std::vector<std::function<void()>> ways{
         [&] { lists.build(insert, 500); },
@@ -65,7 +65,7 @@ TEST_CASE("every way to build a container inside of its own build is refused") {
 TEST_CASE("a refusal that is not caught ends the build around it") {
     CELLIST_EACH_STORAGE(storage);
     Lists<Item> lists(device(), {17}, {.storage = storage});
-    Kernel insert(device(), source, "insert", lists);
+    Kernel insert(device(), insert_one_source, "insert", lists);
     REQUIRE_THROWS_AS(lists.build([&] {
         insert.run(10, lists);
         lists.build_slices([&] { insert.run(10, lists); }, [](const Slice&) {});
@@ -84,7 +84,7 @@ TEST_CASE("a container that is replaced in the midst of its build ends it with a
     };
     for (const std::uint64_t capacity : {0u, 5000u}) {
         Lists<Item> lists = made(capacity);
-        Kernel insert(device(), source, "insert", lists);
+        Kernel insert(device(), insert_one_source, "insert", lists);
         const auto replace = [&] {
             insert.run(1000, lists);
             lists = made(capacity);

@@ -9,7 +9,7 @@
 namespace cellist::test {
 namespace {
 
-constexpr auto source = R"(
+constexpr auto insert_into_several_source = R"(
 #include <cellist/lists.clh>
 
 kernel void into_two(CELLIST_LISTS(Item, a), CELLIST_LISTS(Item, b), uint count)
@@ -38,8 +38,8 @@ constexpr cl_uint cells_b = 10;
 constexpr cl_uint cells_c = 7;
 
 /// What the kernels insert into the three containers, rejections included.
-struct Expected {
-    explicit Expected(cl_uint count) {
+struct ExpectedLists {
+    explicit ExpectedLists(cl_uint count) {
         for (cl_uint i = 0; i < count; ++i) {
             const Item item{static_cast<cl_float>(i % 17), i};
             a.add(i % 31, item);
@@ -81,7 +81,7 @@ TEST_CASE("two containers of any storages are built at once, growing or not") {
                                 << (room_b ? "" : ", growing"));
             Lists<Item> a(device(), {cells_a}, with_room(first, room_a));
             Lists<Item> b(device(), {cells_b}, with_room(second, room_b));
-            Kernel kernel(device(), source, "into_two", a, b);
+            Kernel kernel(device(), insert_into_several_source, "into_two", a, b);
             for (const cl_uint count : {1000u, 0u, 93u}) {
                 int calls = 0;
                 const auto [report_a, report_b] = cellist::build(
@@ -90,7 +90,7 @@ TEST_CASE("two containers of any storages are built at once, growing or not") {
                         kernel.run(Range::padded(count, 64), a, b, count);
                     },
                     a, b);
-                const Expected expected(count);
+                const ExpectedLists expected(count);
                 require_built(a, report_a, expected.a);
                 require_built(b, report_b, expected.b);
                 REQUIRE(report_a.passes == static_cast<std::uint32_t>(calls));
@@ -107,13 +107,13 @@ TEST_CASE("three containers of three storages and policies are built at once") {
                  std::tuple(Storage::fixed, Storage::linked, Storage::counted));
     INFO(name_of(first) << ", " << name_of(second) << ", " << name_of(third));
     constexpr cl_uint count = 1000;
-    const Expected expected(count);
+    const ExpectedLists expected(count);
     Lists<Item> a(device(), {cells_a}, with_room(first, false));
     Lists<Item> b(device(), {cells_b}, with_room(second, true, Overflow::stop));
     Lists<Item> c(
         device(), {cells_c},
         {.storage = third, .overflow = Overflow::drop, .capacity_nodes = 100, .slots = 100});
-    Kernel kernel(device(), source, "into_three", a, b, c);
+    Kernel kernel(device(), insert_into_several_source, "into_three", a, b, c);
     const auto [report_a, report_b, report_c] =
         cellist::build([&] { kernel.run(Range::padded(count, 64), a, b, c, count); }, a, b, c);
     require_built(a, report_a, expected.a);
@@ -150,13 +150,13 @@ TEST_CASE("all containers are empty after one of two has thrown") {
     const Storage first = GENERATE(from_range(all_storages));
     const Storage second = GENERATE(from_range(all_storages));
     constexpr cl_uint count = 500;
-    const Expected expected(count);
+    const ExpectedLists expected(count);
     for (const bool room_a : {true, false}) {
         INFO(name_of(first) << (room_a ? "" : ", growing") << " and " << name_of(second)
                             << ", which stops");
         Lists<Item> a(device(), {cells_a}, with_room(first, room_a));
         Lists<Item> b(device(), {cells_b}, with_room(second, false, Overflow::stop));
-        Kernel kernel(device(), source, "into_two", a, b);
+        Kernel kernel(device(), insert_into_several_source, "into_two", a, b);
         const auto insert = [&] { kernel.run(Range::padded(count, 64), a, b, count); };
         (void)error_of<OverflowError>([&] { cellist::build(insert, a, b); });
         require_empty(a);
@@ -181,7 +181,7 @@ TEST_CASE("all containers are empty after the inserting code has thrown, in any 
     for (const int failing : {1, 2}) {
         Lists<Item> a(device(), {cells_a}, with_room(first, false));
         Lists<Item> b(device(), {cells_b}, with_room(second, false));
-        Kernel kernel(device(), source, "into_two", a, b);
+        Kernel kernel(device(), insert_into_several_source, "into_two", a, b);
         int calls = 0;
         REQUIRE_THROWS_AS(cellist::build(
                               [&] {
@@ -195,15 +195,15 @@ TEST_CASE("all containers are empty after the inserting code has thrown, in any 
         require_empty(b);
         const auto [report_a, report_b] =
             cellist::build([&] { kernel.run(Range::padded(count, 64), a, b, count); }, a, b);
-        require_built(a, report_a, Expected(count).a);
-        require_built(b, report_b, Expected(count).b);
+        require_built(a, report_a, ExpectedLists(count).a);
+        require_built(b, report_b, ExpectedLists(count).b);
     }
 }
 
 TEST_CASE("a kernel that does not repeat itself empties the containers beside counted ones, too") {
     Lists<Item> a(device(), {cells_a}, with_room(Storage::linked, true));
     Lists<Item> b(device(), {cells_b}, with_room(Storage::counted, true));
-    Kernel kernel(device(), source, "into_two", a, b);
+    Kernel kernel(device(), insert_into_several_source, "into_two", a, b);
     cl_uint count = 500;
     const auto error =
         error_of([&] { cellist::build([&] { kernel.run(512, a, b, count -= 3); }, a, b); });

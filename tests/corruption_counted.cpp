@@ -7,7 +7,7 @@
 namespace cellist::test {
 namespace {
 
-constexpr auto source = R"(
+constexpr auto corrupt_counted_source = R"(
 #include <cellist/lists.clh>
 
 // heads are cells + 1 offsets, then a count for each cell.
@@ -32,8 +32,8 @@ public:
     CountedCorruption()
         : lists(device(), {cells}, {.storage = Storage::counted, .capacity_nodes = capacity}),
           inserter_(lists),
-          set_(device(), source, "set_word", lists),
-          scramble_(device(), source, "scramble", lists) {
+          set_(device(), corrupt_counted_source, "set_word", lists),
+          scramble_(device(), corrupt_counted_source, "scramble", lists) {
         for (cl_uint i = 0; i < cells * length; ++i)
             inserts_.add(i % cells, {static_cast<cl_float>(i), i});
         restore();
@@ -76,23 +76,22 @@ private:
     Kernel scramble_;
 };
 
-using Corruption = CountedCorruption;
-
 TEST_CASE("offsets that are out of order or beyond the pool are found", "[corruption]") {
-    Corruption corruption;
-    for (cl_uint word = 1; word < Corruption::cells; ++word)
+    CountedCorruption corruption;
+    for (cl_uint word = 1; word < CountedCorruption::cells; ++word)
         corruption.require_found(
-            word, {0, 1, Corruption::sound(word) - 1, Corruption::sound(word) + 1,
-                   Corruption::sound(word - 1), Corruption::sound(word + 1), 300, 399, 400, 401,
-                   0x7FFFFFFF, 0x80000000, 0xFFFFFFFE, 0xFFFFFFFF});
+            word, {0, 1, CountedCorruption::sound(word) - 1, CountedCorruption::sound(word) + 1,
+                   CountedCorruption::sound(word - 1), CountedCorruption::sound(word + 1), 300, 399,
+                   400, 401, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFE, 0xFFFFFFFF});
     corruption.require_found(0, {301, 400, 401, 0x80000000, 0xFFFFFFFF});
-    corruption.require_found(Corruption::cells, {0, 269, 301, 400, 401, 0x80000000, 0xFFFFFFFF});
+    corruption.require_found(CountedCorruption::cells,
+                             {0, 269, 301, 400, 401, 0x80000000, 0xFFFFFFFF});
     std::cout << "corruption: " << corruption.tried << " offsets of counted lists" << std::endl;
 }
 
 TEST_CASE("the findings name the first bad cell", "[corruption]") {
-    Corruption corruption;
-    corruption.set(Corruption::counts_at + 7, 29);
+    CountedCorruption corruption;
+    corruption.set(CountedCorruption::counts_at + 7, 29);
     Validation found = corruption.lists.validate();
     REQUIRE(found.lost_nodes > 0);
     REQUIRE(found.first_bad_cell == 7);
@@ -103,25 +102,26 @@ TEST_CASE("the findings name the first bad cell", "[corruption]") {
 }
 
 TEST_CASE("counts that are too small are found", "[corruption]") {
-    Corruption corruption;
-    for (cl_uint cell = 0; cell < Corruption::cells; ++cell)
-        corruption.require_found(Corruption::counts_at + cell, {0, 1, 29});
+    CountedCorruption corruption;
+    for (cl_uint cell = 0; cell < CountedCorruption::cells; ++cell)
+        corruption.require_found(CountedCorruption::counts_at + cell, {0, 1, 29});
 }
 
 TEST_CASE("counts that are too large are found", "[corruption]") {
-    Corruption corruption;
-    for (cl_uint cell = 0; cell < Corruption::cells; ++cell)
-        corruption.require_found(Corruption::counts_at + cell, {31, 300, 0x80000000, 0xFFFFFFFF});
+    CountedCorruption corruption;
+    for (cl_uint cell = 0; cell < CountedCorruption::cells; ++cell)
+        corruption.require_found(CountedCorruption::counts_at + cell,
+                                 {31, 300, 0x80000000, 0xFFFFFFFF});
 }
 
 TEST_CASE("a first list that begins behind the pool's begin is found", "[corruption]") {
-    Corruption corruption;
+    CountedCorruption corruption;
     corruption.require_found(0, {1, 29, 30});
 }
 
 TEST_CASE("a last list that ends too early is found", "[corruption]") {
-    Corruption corruption;
-    corruption.require_found(Corruption::cells, {299, 271, 270});
+    CountedCorruption corruption;
+    corruption.require_found(CountedCorruption::cells, {299, 271, 270});
 }
 
 TEST_CASE("a border that moves between two lists is found, dropped records or not",
@@ -134,7 +134,7 @@ TEST_CASE("a border that moves between two lists is found, dropped records or no
         Inserts<Item> inserts;
         for (cl_uint i = 0; i < 100; ++i) inserts.add(i % 10, {1.0f, i});
         Inserter(lists).build(lists, inserts);
-        Kernel set(device(), source, "set_word", lists);
+        Kernel set(device(), corrupt_counted_source, "set_word", lists);
         for (cl_uint word = 0; word <= 10; ++word)
             for (cl_uint bit = 0; bit < 32; ++bit) {
                 const cl_uint sound = std::min(word * 10, capacity);
@@ -148,7 +148,7 @@ TEST_CASE("a border that moves between two lists is found, dropped records or no
 }
 
 TEST_CASE("scrambled offsets and counts are found and end", "[corruption]") {
-    Corruption corruption;
+    CountedCorruption corruption;
     int tried = 0;
     for (cl_uint seed = 0; seed < 50; ++seed)
         for (const cl_uint range : {2u, 31u, 300u, 401u, 10'000u, 0xFFFFFFFFu}) {
@@ -156,7 +156,7 @@ TEST_CASE("scrambled offsets and counts are found and end", "[corruption]") {
             corruption.scramble(seed, range);
             const Validation found = corruption.lists.validate();
             REQUIRE_FALSE(found.ok());
-            REQUIRE(found.broken_links + found.repeated_nodes <= Corruption::cells);
+            REQUIRE(found.broken_links + found.repeated_nodes <= CountedCorruption::cells);
             ++tried;
         }
     corruption.restore();

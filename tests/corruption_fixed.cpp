@@ -6,7 +6,7 @@
 namespace cellist::test {
 namespace {
 
-constexpr auto source = R"(
+constexpr auto set_count_source = R"(
 #include <cellist/lists.clh>
 kernel void set_count(CELLIST_LISTS(Item, lists), uint cell, uint count)
 {
@@ -24,7 +24,7 @@ public:
         : lists(device(), {cells},
                 {.storage = Storage::fixed, .overflow = Overflow::drop, .slots = slots}),
           length_(length),
-          set_(device(), source, "set_count", lists) {
+          set_(device(), set_count_source, "set_count", lists) {
         Inserts<Item> inserts;
         for (cl_uint i = 0; i < cells * length; ++i)
             inserts.add(i % cells, {static_cast<cl_float>(i), i});

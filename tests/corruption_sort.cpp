@@ -9,7 +9,7 @@
 namespace cellist::test {
 namespace {
 
-constexpr auto source = R"(
+constexpr auto corrupt_sort_source = R"(
 #include <cellist/lists.clh>
 
 // Every head and every link leads anywhere below `range`, or nowhere.
@@ -93,12 +93,12 @@ private:
     Inserts<Item> inserts_;
 };
 
-#define CELLIST_EACH_DIVISION                                                                      \
+#define CELLIST_ANY_DIVISION                                                                       \
     GENERATE(cl_device_type{CL_DEVICE_TYPE_CPU}, cl_device_type{CL_DEVICE_TYPE_GPU})
 
 TEST_CASE("links in circles and links that meet do not sort", "[corruption]") {
-    Corrupt corrupt(Storage::linked, CELLIST_EACH_DIVISION);
-    Kernel scramble(device(), source, "scramble_links", corrupt.lists);
+    Corrupt corrupt(Storage::linked, CELLIST_ANY_DIVISION);
+    Kernel scramble(device(), corrupt_sort_source, "scramble_links", corrupt.lists);
     cl_uint failed = 0;
     constexpr cl_uint tried = 60;
     for (cl_uint seed = 0; seed < tried; ++seed) {
@@ -117,8 +117,8 @@ TEST_CASE("links in circles and links that meet do not sort", "[corruption]") {
 }
 
 TEST_CASE("all lists in one circle do not sort", "[corruption][oclgrind]") {
-    Corrupt corrupt(Storage::linked, CELLIST_EACH_DIVISION);
-    Kernel make_circle(device(), source, "make_circle", corrupt.lists);
+    Corrupt corrupt(Storage::linked, CELLIST_ANY_DIVISION);
+    Kernel make_circle(device(), corrupt_sort_source, "make_circle", corrupt.lists);
     for (const cl_uint length : {1u, 2u, 3u, 16u, 257u, 600u, Corrupt::nodes}) {
         INFO("a circle of " << length);
         corrupt.restore();
@@ -130,8 +130,8 @@ TEST_CASE("all lists in one circle do not sort", "[corruption][oclgrind]") {
 }
 
 TEST_CASE("links out of the pool and lists of other lengths do not sort", "[corruption]") {
-    Corrupt corrupt(Storage::linked, CELLIST_EACH_DIVISION);
-    Kernel cut(device(), source, "cut", corrupt.lists);
+    Corrupt corrupt(Storage::linked, CELLIST_ANY_DIVISION);
+    Kernel cut(device(), corrupt_sort_source, "cut", corrupt.lists);
     // Out of the pool; nowhere, so that nodes are lost; to another list, whose end two lists share
     // then.
     for (const cl_uint target : {0x7FFFFFFFu, 0xFFFFFFFEu, 0xFFFFFFFFu, 5u})
@@ -145,16 +145,16 @@ TEST_CASE("links out of the pool and lists of other lengths do not sort", "[corr
 }
 
 TEST_CASE("offsets that descend are an error of a sort", "[corruption]") {
-    Corrupt corrupt(Storage::counted, CELLIST_EACH_DIVISION);
-    Kernel scramble(device(), source, "scramble_offsets", corrupt.lists);
+    Corrupt corrupt(Storage::counted, CELLIST_ANY_DIVISION);
+    Kernel scramble(device(), corrupt_sort_source, "scramble_offsets", corrupt.lists);
     scramble.run(Range::padded(Corrupt::cells + 1, 64), corrupt.lists, 0u, Corrupt::nodes);
     REQUIRE(corrupt.sort_fails());
     corrupt.require_usable();
 }
 
 TEST_CASE("impossible offsets end a sort, too", "[corruption]") {
-    Corrupt corrupt(Storage::counted, CELLIST_EACH_DIVISION);
-    Kernel scramble(device(), source, "scramble_offsets", corrupt.lists);
+    Corrupt corrupt(Storage::counted, CELLIST_ANY_DIVISION);
+    Kernel scramble(device(), corrupt_sort_source, "scramble_offsets", corrupt.lists);
     constexpr cl_uint tried = 40;
     for (cl_uint seed = 0; seed < tried; ++seed) {
         INFO("seed " << seed);
@@ -169,7 +169,7 @@ TEST_CASE("impossible offsets end a sort, too", "[corruption]") {
 
 TEST_CASE("lengths of links in circles end", "[corruption]") {
     Corrupt corrupt(Storage::linked, CL_DEVICE_TYPE_CPU);
-    Kernel make_circle(device(), source, "make_circle", corrupt.lists);
+    Kernel make_circle(device(), corrupt_sort_source, "make_circle", corrupt.lists);
     corrupt.restore();
     make_circle.run(Range::padded(Corrupt::nodes, 64), corrupt.lists, 7u);
     REQUIRE(corrupt.lists.lengths().longest == Corrupt::nodes);

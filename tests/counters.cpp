@@ -4,7 +4,7 @@
 namespace cellist::test {
 namespace {
 
-constexpr auto source = R"(
+constexpr auto preset_counters_source = R"(
 #include <cellist/lists.clh>
 
 kernel void preset_low(CELLIST_LISTS(Item, lists), uint dropped, uint rejected)
@@ -50,8 +50,8 @@ kernel void owners(CELLIST_LISTS(Item, lists), global uint* owner, global uint* 
 TEST_CASE("dropped and rejected records are counted in 64 bits") {
     for (const std::uint64_t capacity : {10u, 4096u}) {
         Lists<Item> lists(device(), {50}, {.overflow = Overflow::drop, .capacity_nodes = capacity});
-        Kernel preset(device(), source, "preset_low", lists);
-        Kernel insert(device(), source, "insert_many", lists);
+        Kernel preset(device(), preset_counters_source, "preset_low", lists);
+        Kernel insert(device(), preset_counters_source, "insert_many", lists);
         Buffer<cl_uint> inserted(device(), 1);
         inserted.fill(0);
         constexpr cl_uint dropped = 0xFFFFFFF0u;
@@ -77,8 +77,8 @@ TEST_CASE("a counter past its shard's last node hands out no node") {
             INFO("capacity " << capacity << ", above by " << above);
             Lists<Item> lists(device(), {50},
                               {.overflow = Overflow::drop, .capacity_nodes = capacity});
-            Kernel preset(device(), source, "preset_allocated", lists);
-            Kernel insert(device(), source, "insert_many", lists);
+            Kernel preset(device(), preset_counters_source, "preset_allocated", lists);
+            Kernel insert(device(), preset_counters_source, "insert_many", lists);
             Buffer<cl_uint> inserted(device(), 1);
             inserted.fill(0);
             const BuildReport report = lists.build([&] {
@@ -98,7 +98,7 @@ TEST_CASE("every node of the pool belongs to exactly one shard") {
         // A pool that grows may have more nodes than its capacity.
         const Lists<Item> lists(device(), {1},
                                 {.overflow = Overflow::drop, .capacity_nodes = capacity});
-        Kernel owners(device(), source, "owners", lists);
+        Kernel owners(device(), preset_counters_source, "owners", lists);
         Buffer<cl_uint> owner(device(), capacity);
         Buffer<cl_uint> repeated(device(), 1);
         owner.fill(0xFFFFFFFFu);

@@ -9,7 +9,7 @@
 namespace cellist::test {
 namespace {
 
-constexpr auto source = R"(
+constexpr auto queued_kernels_source = R"(
 #include <cellist/lists.clh>
 
 kernel void insert(CELLIST_LISTS(Item, lists))
@@ -37,12 +37,12 @@ kernel void sums(CELLIST_LISTS(Item, lists), global uint* sums)
 kernel void add(global uint* values, uint n) { values[get_global_id(0)] += n; }
 )";
 
-constexpr cl_uint cells = 17;
-constexpr cl_uint count = 2000;
+constexpr cl_uint queue_cells = 17;
+constexpr cl_uint queue_records = 2000;
 
 /// Two devices with a queue each, of which the second waits for an event.
-struct Scene {
-    explicit Scene(cl_command_queue_properties properties = 0)
+struct TwoQueues {
+    explicit TwoQueues(cl_command_queue_properties properties = 0)
         : cl_device(device().queue().getInfo<CL_QUEUE_DEVICE>()),
           context(cl_device),
           owner(context, cl::CommandQueue(context, cl_device, properties)),
@@ -66,10 +66,10 @@ bool is_complete(const cl::Event& event) {
 }
 
 void require_lists(const Lists<Item>& lists) {
-    require_sound(lists, count);
+    require_sound(lists, queue_records);
     const HostLists<Item> found = lists.download();
-    for (cl_uint cell = 0; cell < cells; ++cell)
-        for (const Item& item : found.cell(cell)) REQUIRE(item.id % cells == cell);
+    for (cl_uint cell = 0; cell < queue_cells; ++cell)
+        for (const Item& item : found.cell(cell)) REQUIRE(item.id % queue_cells == cell);
 }
 
 TEST_CASE("a build waits for the kernels of another queue") {
@@ -77,48 +77,49 @@ TEST_CASE("a build waits for the kernels of another queue") {
     const auto properties =
         GENERATE(cl_command_queue_properties{0},
                  cl_command_queue_properties{CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE});
-    std::optional<Scene> scene;
+    std::optional<TwoQueues> scene;
     try {
         scene.emplace(properties);
     } catch (const cl::Error&) {
         return;  // the device has no such queue
     }
-    Lists<Item> lists(scene->owner, {cells}, {.storage = storage, .capacity_nodes = 3000});
-    Lists<Item> others(scene->user, {cells}, {.storage = storage, .capacity_nodes = 3000});
-    Kernel insert(scene->user, source, "insert", lists);
+    Lists<Item> lists(scene->owner, {queue_cells}, {.storage = storage, .capacity_nodes = 3000});
+    Lists<Item> others(scene->user, {queue_cells}, {.storage = storage, .capacity_nodes = 3000});
+    Kernel insert(scene->user, queued_kernels_source, "insert", lists);
     for (int i = 0; i < 2; ++i) {
         scene->close();
-        Pending<BuildReport> pending = lists.build_async(insert, count);
+        Pending<BuildReport> pending = lists.build_async(insert, queue_records);
         scene->owner.queue().flush();
         REQUIRE_FALSE(is_complete(pending.event()));
         scene->open();
-        require_complete(pending.get(), count);
+        require_complete(pending.get(), queue_records);
         require_lists(lists);
     }
-    require_complete(lists.build(insert, count), count);
+    require_complete(lists.build(insert, queue_records), queue_records);
     lists.sort(&Item::key);
     REQUIRE(lists.pack().records.download() == lists.download().records());
 
     // Lists of both queues at once.
-    Kernel both(scene->owner, source, "insert_both", lists, others);
+    Kernel both(scene->owner, queued_kernels_source, "insert_both", lists, others);
     scene->close();
-    auto pending = cellist::build_async([&] { both.run(count, lists, others); }, lists, others);
+    auto pending =
+        cellist::build_async([&] { both.run(queue_records, lists, others); }, lists, others);
     REQUIRE_FALSE(is_complete(pending.event()));
     scene->open();
-    for (const BuildReport& report : pending.get()) require_complete(report, count);
+    for (const BuildReport& report : pending.get()) require_complete(report, queue_records);
     require_lists(lists);
     require_lists(others);
 }
 
 TEST_CASE("one build of containers of two contexts is refused, and names both") {
-    Scene scene;
+    TwoQueues scene;
     const cl::Context other_context(scene.cl_device);
     const Device elsewhere(other_context, cl::CommandQueue(other_context, scene.cl_device));
-    Lists<Item> here(scene.owner, {cells});
+    Lists<Item> here(scene.owner, {queue_cells});
     Lists<Item> there(elsewhere, {3});
-    Kernel insert(scene.owner, source, "insert", here);
-    Kernel insert_there(elsewhere, source, "insert", there);
-    require_complete(here.build(insert, count), count);
+    Kernel insert(scene.owner, queued_kernels_source, "insert", here);
+    Kernel insert_there(elsewhere, queued_kernels_source, "insert", there);
+    require_complete(here.build(insert, queue_records), queue_records);
     bool has_run = false;
     const auto refused = [&](auto&& build) {
         const auto error = error_of(build);
@@ -133,29 +134,29 @@ TEST_CASE("one build of containers of two contexts is refused, and names both") 
     refused([&] { (void)cellist::build_async(run, there, here); });
     // The lists are as they were, and each is built alone.
     require_lists(here);
-    require_complete(there.build(insert_there, count), count);
+    require_complete(there.build(insert_there, queue_records), queue_records);
 }
 
 TEST_CASE("reading and writing wait for the kernels of another queue, and these for them") {
-    Scene scene;
-    Lists<Item> lists(scene.owner, {cells});
-    Buffer<cl_uint> sums(scene.owner, cells);
+    TwoQueues scene;
+    Lists<Item> lists(scene.owner, {queue_cells});
+    Buffer<cl_uint> sums(scene.owner, queue_cells);
     sums.fill(7);
-    Kernel insert(scene.owner, source, "insert", lists);
-    Kernel read(scene.user, source, "sums", lists);
-    Kernel add(scene.user, source, "add", lists);
+    Kernel insert(scene.owner, queued_kernels_source, "insert", lists);
+    Kernel read(scene.user, queued_kernels_source, "sums", lists);
+    Kernel add(scene.user, queued_kernels_source, "add", lists);
 
     // The kernel reads what was built before, though the queue of the lists goes on to clear them.
-    lists.build(insert, count);
+    lists.build(insert, queue_records);
     scene.close();
-    const cl::Event done = read.run(cells, lists, sums);
+    const cl::Event done = read.run(queue_cells, lists, sums);
     lists.clear();
     const cl::Event cleared = scene.owner.enqueue_marker();
     scene.owner.queue().flush();
     REQUIRE_FALSE(is_complete(cleared));
     scene.open();
-    std::vector<cl_uint> expected(cells);
-    for (cl_uint i = 0; i < count; ++i) expected[i % cells] += i;
+    std::vector<cl_uint> expected(queue_cells);
+    for (cl_uint i = 0; i < queue_records; ++i) expected[i % queue_cells] += i;
     REQUIRE(sums.download() == expected);
     REQUIRE(is_complete(done));
     REQUIRE(lists.lengths().total == 0);
@@ -163,16 +164,16 @@ TEST_CASE("reading and writing wait for the kernels of another queue, and these 
     // A buffer: filled, added to by the other queue, read, filled again.
     scene.close();
     sums.fill(1);
-    add.run(cells, sums, cl_uint{4});
-    add.run(cells, sums, cl_uint{5});
+    add.run(queue_cells, sums, cl_uint{4});
+    add.run(queue_cells, sums, cl_uint{5});
     Pending<std::vector<cl_uint>> first = sums.download_async();
     sums.fill(2);
-    add.run(cells, sums, cl_uint{1});
+    add.run(queue_cells, sums, cl_uint{1});
     scene.owner.queue().flush();
     REQUIRE_FALSE(first.ready());
     scene.open();
-    REQUIRE(first.get() == std::vector<cl_uint>(cells, 10));
-    REQUIRE(sums.download() == std::vector<cl_uint>(cells, 3));
+    REQUIRE(first.get() == std::vector<cl_uint>(queue_cells, 10));
+    REQUIRE(sums.download() == std::vector<cl_uint>(queue_cells, 3));
 }
 
 }  // namespace

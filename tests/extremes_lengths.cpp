@@ -21,7 +21,7 @@ struct Keys {
     const char* name;
     cl_float (*key)(cl_uint i, cl_uint length, std::mt19937& random);
 };
-constexpr std::array distributions{
+constexpr std::array key_distributions{
     Keys{"random",
          [](cl_uint, cl_uint, std::mt19937& random) { return cl_float(below(random, 1u << 24)); }},
     Keys{"few different",
@@ -67,13 +67,14 @@ void require_sorts(const Inserts<Item>& inserts, std::uint64_t cells, auto membe
 TEST_CASE("lists at the borders of every power of two are sorted", "[extremes]") {
     CELLIST_RANDOM(random, 310u);
     const std::vector<cl_uint> lengths = borders();
-    for (const Keys& keys : distributions) {
+    for (const Keys& keys : key_distributions) {
         INFO(keys.name << " keys");
         require_sorts(inserts_of(lengths, keys, random), lengths.size(), &Item::key, all_orders,
                       all_storages);
     }
     std::cout << "extremes: lists of " << lengths.size() << " lengths sorted by "
-              << distributions.size() << " kinds of keys, in 3 storages and 2 orders" << std::endl;
+              << key_distributions.size() << " kinds of keys, in 3 storages and 2 orders"
+              << std::endl;
 }
 
 TEST_CASE("neighbours of any lengths are sorted", "[extremes]") {
@@ -85,7 +86,7 @@ TEST_CASE("neighbours of any lengths are sorted", "[extremes]") {
         const auto end = static_cast<cl_uint>(below(random, 4) == 0 ? all.size() : 21);
         length = below(random, 4) == 0 ? 0 : all[below(random, end)];
     }
-    Inserts<Item> inserts = inserts_of(lengths, distributions[0], random);
+    Inserts<Item> inserts = inserts_of(lengths, key_distributions[0], random);
     inserts.shuffle(random);
     require_sorts(inserts, lengths.size(), &Item::key, all_orders, all_storages);
     std::cout << "extremes: " << lengths.size() << " lists of mixed lengths, " << inserts.size()
@@ -95,19 +96,19 @@ TEST_CASE("neighbours of any lengths are sorted", "[extremes]") {
 TEST_CASE("lists of 100,000 nodes are sorted", "[extremes]") {
     CELLIST_RANDOM(random, 312u);
     const std::vector<cl_uint> lengths{0, 1, 100'000, 2, 100'000, 0};
-    for (const Keys& keys : distributions) {
+    for (const Keys& keys : key_distributions) {
         INFO(keys.name << " keys");
         require_sorts(inserts_of(lengths, keys, random), lengths.size(), &Item::key, all_orders,
                       all_storages);
     }
-    std::cout << "extremes: lists of 100000 nodes sorted by " << distributions.size()
+    std::cout << "extremes: lists of 100000 nodes sorted by " << key_distributions.size()
               << " kinds of keys, in 3 storages and 2 orders" << std::endl;
 }
 
 TEST_CASE("lists of 100,000 nodes are sorted by one work-item each", "[extremes]") {
     CELLIST_RANDOM(random, 314u);
     const std::vector<cl_uint> lengths{0, 1, 100'000, 2, 100'000, 0};
-    const Inserts<Item> inserts = inserts_of(lengths, distributions.back(), random);
+    const Inserts<Item> inserts = inserts_of(lengths, key_distributions.back(), random);
     const HostLists<Item> expected =
         sorted_lists(inserts, lengths.size(), before<Item>(&Item::key, Order::descending));
     for (const Storage storage : all_storages) {
@@ -123,7 +124,7 @@ TEST_CASE("one list of all 4,194,304 nodes is sorted", "[extremes]") {
     CELLIST_RANDOM(random, 313u);
     constexpr std::array storages{Storage::linked, Storage::counted};
     const std::vector<cl_uint> lengths{0, 1u << 22, 0};
-    Inserts<Item> inserts = inserts_of(lengths, distributions.back(), random);
+    Inserts<Item> inserts = inserts_of(lengths, key_distributions.back(), random);
     require_sorts(inserts, lengths.size(), &Item::key, std::array{Order::ascending}, storages);
     inserts.shuffle(random);
     require_sorts(inserts, lengths.size(), &Item::id, std::array{Order::descending}, storages);

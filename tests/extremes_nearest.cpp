@@ -9,24 +9,24 @@
 namespace cellist::test {
 namespace {
 
-constexpr std::array<cl_uint, 8> lengths{0, 1, 2, 8, 9, 10, 100, 600};
+constexpr std::array<cl_uint, 8> nearest_lengths{0, 1, 2, 8, 9, 10, 100, 600};
 
 /// Calls `use(inserts, name, member)` for a key of each type that the device has.
 void for_each_key(std::mt19937& random, auto use) {
-    const auto numbers = extreme_inserts<Numbers>(lengths, random);
+    const auto numbers = extreme_inserts<Numbers>(nearest_lengths, random);
     use(numbers, "ulong_value", &Numbers::ulong_value);
     use(numbers, "long_value", &Numbers::long_value);
     use(numbers, "float_value", &Numbers::float_value);
     use(numbers, "uint_value", &Numbers::uint_value);
     use(numbers, "int_value", &Numbers::int_value);
-    const auto narrow = extreme_inserts<Narrow>(lengths, random);
+    const auto narrow = extreme_inserts<Narrow>(nearest_lengths, random);
     use(narrow, "ushort_value", &Narrow::ushort_value);
     use(narrow, "short_value", &Narrow::short_value);
     use(narrow, "level", &Narrow::level);
     use(narrow, "uchar_value", &Narrow::uchar_value);
     use(narrow, "char_value", &Narrow::char_value);
     if (!device().info().fp64) CELLIST_SKIP("doubles: the device has none");
-    use(extreme_inserts<Wide>(lengths, random), "key", &Wide::key);
+    use(extreme_inserts<Wide>(nearest_lengths, random), "key", &Wide::key);
 }
 
 /// The first records of each list.
@@ -51,7 +51,7 @@ Oracle<T> oracle_of(const HostLists<T>& lists) {
     return oracle;
 }
 
-constexpr auto source = R"(
+constexpr auto take_nearest_source = R"(
 #include <cellist/lists.clh>
 
 #define LISTS(type) CELLIST_LISTS(type, lists)
@@ -70,7 +70,8 @@ kernel void take_nearest(LISTS(RECORD), global RECORD* out, global uint* found)
 template <class T>
 HostLists<T> take_nearest(const Lists<T>& lists, const std::string& member) {
     const std::string options = "-DRECORD=" + DeviceType<T>::name() + " -DKEY=" + member;
-    Kernel kernel(device(), Source{.text = source, .options = options}, "take_nearest", lists);
+    Kernel kernel(device(), Source{.text = take_nearest_source, .options = options}, "take_nearest",
+                  lists);
     const std::uint64_t cells = lists.shape().cells();
     const Buffer<T> out(device(), cells * 9);
     const Buffer<cl_uint> found(device(), cells);
@@ -91,9 +92,9 @@ HostLists<T> take_nearest(const Lists<T>& lists, const std::string& member) {
 template <class T>
 void require_takes_nearest(const Inserts<T>& inserts, Storage storage, const char* name, auto key) {
     INFO("by " << name << ", storage " << name_of(storage));
-    Lists<T> lists(device(), {lengths.size()}, {.storage = storage});
+    Lists<T> lists(device(), {nearest_lengths.size()}, {.storage = storage});
     Inserter(lists).build(lists, inserts);
-    const HostLists<T> sorted = sorted_lists(inserts, lengths.size(), before<T>(key));
+    const HostLists<T> sorted = sorted_lists(inserts, nearest_lengths.size(), before<T>(key));
     REQUIRE(same_bits(take_nearest(lists, name), first_of(sorted, 9)));
 }
 
@@ -102,11 +103,11 @@ template <class T>
 void require_keeps_nearest(const Inserts<T>& inserts, std::uint32_t slots, const char* name,
                            auto key) {
     INFO("by " << name << ", " << slots << " slots");
-    Lists<T> lists(device(), {lengths.size()}, {.storage = nearest(key, slots)});
+    Lists<T> lists(device(), {nearest_lengths.size()}, {.storage = nearest(key, slots)});
     const BuildReport report = Inserter(lists).build(lists, inserts);
     REQUIRE(report.stored + report.dropped == inserts.size());
     require_sound(lists, report.stored);
-    const HostLists<T> sorted = sorted_lists(inserts, lengths.size(), before<T>(key));
+    const HostLists<T> sorted = sorted_lists(inserts, nearest_lengths.size(), before<T>(key));
     require_same(lists.download(), oracle_of(first_of(sorted, slots)));
 }
 
@@ -114,11 +115,11 @@ void require_keeps_nearest(const Inserts<T>& inserts, std::uint32_t slots, const
 template <class T>
 void require_sorts_nearest(const Inserts<T>& inserts, Storage storage, auto key) {
     INFO("storage " << name_of(storage));
-    Lists<T> lists(device(), {lengths.size()}, {.storage = storage});
+    Lists<T> lists(device(), {nearest_lengths.size()}, {.storage = storage});
     Inserter(lists).build(lists, inserts);
     lists.partial_sort(key, 9);
     const HostLists<T> found = lists.download();
-    const HostLists<T> sorted = sorted_lists(inserts, lengths.size(), before<T>(key));
+    const HostLists<T> sorted = sorted_lists(inserts, nearest_lengths.size(), before<T>(key));
     require_same(found, oracle_of(sorted));
     REQUIRE(same_bits(first_of(found, 9), first_of(sorted, 9)));
 }
@@ -147,24 +148,25 @@ TEST_CASE("the nearest records by keys at the borders of their types are kept", 
 TEST_CASE("the nearest records by keys at the borders of their types are sorted to the front",
           "[extremes]") {
     CELLIST_RANDOM(random, 88u);
-    const auto numbers = extreme_inserts<Numbers>(lengths, random);
+    const auto numbers = extreme_inserts<Numbers>(nearest_lengths, random);
     require_sorts_nearest(numbers, Storage::linked, &Numbers::float_value);
     require_sorts_nearest(numbers, Storage::counted, &Numbers::long_value);
     if (!device().info().fp64) CELLIST_SKIP("doubles: the device has none");
-    const auto doubles = extreme_inserts<Wide>(lengths, random);
+    const auto doubles = extreme_inserts<Wide>(nearest_lengths, random);
     require_sorts_nearest(doubles, Storage::fixed, &Wide::key);
 }
 
 TEST_CASE("a member at the borders of its type is packed alone", "[extremes]") {
     CELLIST_EACH_STORAGE(storage);
     CELLIST_RANDOM(random, 87u);
-    const auto inserts = extreme_inserts<Numbers>(lengths, random);
-    Lists<Numbers> lists(device(), {lengths.size()}, {.storage = storage});
+    const auto inserts = extreme_inserts<Numbers>(nearest_lengths, random);
+    Lists<Numbers> lists(device(), {nearest_lengths.size()}, {.storage = storage});
     Inserter(lists).build(lists, inserts);
     lists.sort(&Numbers::float_value);
     std::vector<cl_float> expected;
     for (const Numbers& record :
-         sorted_lists(inserts, lengths.size(), before<Numbers>(&Numbers::float_value)).records())
+         sorted_lists(inserts, nearest_lengths.size(), before<Numbers>(&Numbers::float_value))
+             .records())
         expected.push_back(record.float_value);
     REQUIRE(same_bits(lists.pack(&Numbers::float_value).records.download(), expected));
 }

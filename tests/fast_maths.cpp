@@ -8,8 +8,8 @@
 namespace cellist::test {
 namespace {
 
-constexpr const char* all_options[] = {"", "-cl-finite-math-only", "-cl-unsafe-math-optimizations",
-                                       "-cl-fast-relaxed-math"};
+constexpr const char* maths_options[] = {"", "-cl-finite-math-only",
+                                         "-cl-unsafe-math-optimizations", "-cl-fast-relaxed-math"};
 
 template <class T>
 std::vector<T> coordinates() {
@@ -39,7 +39,7 @@ void require_cells(const std::string& name) {
     const std::vector<T> at = coordinates<T>();
     const Buffer<T> places(device(), at);
     const Buffer<cl_uint> cells(device(), at.size());
-    for (const char* options : all_options) {
+    for (const char* options : maths_options) {
         INFO(name << " " << options);
         Kernel kernel(
             device(),
@@ -72,7 +72,7 @@ TEST_CASE("NaN, infinity and -0 are in order with every build option") {
     const auto count = static_cast<cl_uint>(keys.size());
     Inserts<Item> inserts;
     for (cl_uint i = count; i > 0; --i) inserts.add(0, {keys[i - 1], i - 1});
-    for (const char* options : all_options) {
+    for (const char* options : maths_options) {
         INFO(options);
         Lists<Item> lists(device(), {1});
         Kernel insert(device(), Source{.text = insert_source("Item"), .options = options},

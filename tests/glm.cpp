@@ -26,7 +26,7 @@ struct Sample {
 CELLIST_STRUCT(Sample, position, uv, colour, cell, ids);
 static_assert(sizeof(Sample) == 56);
 
-constexpr auto source = R"(
+constexpr auto glm_kernels_source = R"(
 #include <cellist/lists.clh>
 #include <cellist/glm.clh>
 
@@ -62,7 +62,7 @@ TEST_CASE("GLM types are read and written by kernels") {
                              glm::ivec3(-static_cast<int>(i), 77, 3), glm::uvec2(55, i)});
     }
     Lists<Sample> lists(device(), {7});
-    Kernel kernel(device(), source, "samples", lists, type<Camera>);
+    Kernel kernel(device(), glm_kernels_source, "samples", lists, type<Camera>);
     require_complete(lists.build(kernel, 144, camera), 144);
     require_same(lists.download(), oracle_of(expected, 7));
 

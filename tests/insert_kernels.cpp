@@ -14,7 +14,7 @@ struct Spark {
 };
 CELLIST_STRUCT(Spark, id, heat, rgb);
 
-constexpr auto source = R"(
+constexpr auto inserting_kernels_source = R"(
 #include <cellist/lists.clh>
 
 kernel void loops(CELLIST_LISTS(Item, lists), uint count)
@@ -89,7 +89,7 @@ TEST_CASE("a work-item inserts any number of records, in divergent loops") {
     CELLIST_EACH_STORAGE(storage);
     constexpr cl_uint count = 3000;
     Lists<Item> lists(device(), {101}, {.storage = storage, .capacity_nodes = 5});
-    Kernel kernel(device(), source, "loops", lists);
+    Kernel kernel(device(), inserting_kernels_source, "loops", lists);
     Oracle<Item> oracle;
     for (cl_uint i = 0; i < count; ++i)
         for (cl_uint k = 0; k < i % 13; ++k) {
@@ -106,7 +106,7 @@ TEST_CASE("a work-item inserts any number of records, in divergent loops") {
 TEST_CASE("kernels insert from ranges of two dimensions") {
     CELLIST_EACH_STORAGE(storage);
     Lists<Item> lists(device(), {37, 21}, {.storage = storage});
-    Kernel kernel(device(), source, "plane", lists);
+    Kernel kernel(device(), inserting_kernels_source, "plane", lists);
     require_complete(lists.build(kernel, {40, 24}), 37 * 21, 40 * 24 - 37 * 21);
     const HostLists<Item> host = lists.download();
     for (cl_uint y = 0; y < 21; ++y)
@@ -120,7 +120,7 @@ TEST_CASE("kernels insert from ranges of two dimensions") {
 TEST_CASE("kernels insert from ranges of three dimensions") {
     CELLIST_EACH_STORAGE(storage);
     Lists<Item> lists(device(), {11, 7, 5}, {.storage = storage});
-    Kernel kernel(device(), source, "space", lists);
+    Kernel kernel(device(), inserting_kernels_source, "space", lists);
     require_complete(lists.build(kernel, {12, 8, 6}), 11 * 7 * 5, 12 * 8 * 6 - 11 * 7 * 5);
     const HostLists<Item> host = lists.download();
     for (cl_uint z = 0; z < 5; ++z)
@@ -138,7 +138,7 @@ TEST_CASE("an insert says whether the record was taken") {
     Lists<Item> lists(
         device(), {1000},
         {.storage = storage, .overflow = Overflow::drop, .capacity_nodes = 700, .slots = 1});
-    Kernel kernel(device(), source, "taken", lists);
+    Kernel kernel(device(), inserting_kernels_source, "taken", lists);
     const Buffer<cl_uint> device_taken(device(), 1200);
     const BuildReport report = lists.build(kernel, 1200, device_taken);
     const std::vector<cl_uint> taken = device_taken.download();

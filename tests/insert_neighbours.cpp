@@ -6,7 +6,7 @@
 namespace cellist::test {
 namespace {
 
-constexpr auto source = R"(
+constexpr auto insert_neighbours_source = R"(
 #include <cellist/lists.clh>
 
 // Which work-items take part, by mask: a bit for each of 32 in a row, moved on from row to row.
@@ -79,7 +79,7 @@ TEST_CASE("neighbours share cells, whichever work-items take part") {
     CELLIST_RANDOM(random, 310u);
     constexpr cl_uint count = 2048;
     Lists<Item> lists(device(), {61}, {.storage = storage, .capacity_nodes = count, .slots = 64});
-    Kernel kernel(device(), source, "masked", lists);
+    Kernel kernel(device(), insert_neighbours_source, "masked", lists);
     std::size_t number = 0;
     for (const std::vector<cl_uint>& pattern : patterns(count, 61, random)) {
         const Buffer<cl_uint> cells(device(), pattern);
@@ -106,7 +106,7 @@ TEST_CASE("neighbours share a cell's index in two containers") {
             INFO("storage " << name_of(storage));
             Lists<Item> a(device(), {61}, {.storage = storage});
             Lists<Item> b(device(), {61}, {.storage = storage});
-            Kernel kernel(device(), source, "two_containers", a, b);
+            Kernel kernel(device(), insert_neighbours_source, "two_containers", a, b);
             const Buffer<cl_uint> cells(device(), pattern);
             cellist::build([&] { kernel.run(count, a, b, cells); }, a, b);
             Oracle<Item> in_a, in_b;
@@ -146,7 +146,7 @@ TEST_CASE("neighbours share cells in wild control flow, until the pool is full")
                                .overflow = Overflow::drop,
                                .capacity_nodes = capacity,
                                .slots = static_cast<std::uint32_t>(capacity)});
-            Kernel kernel(device(), source, "wild", lists);
+            Kernel kernel(device(), insert_neighbours_source, "wild", lists);
             const BuildReport report =
                 lists.build(kernel, Range::padded(count, 64), cells, cl_uint{count});
             REQUIRE(report.attempted == oracle.size());

@@ -42,7 +42,7 @@ std::uint64_t kept(const Oracle<Item>& oracle, std::uint64_t cells, std::uint32_
     return sum;
 }
 
-constexpr auto by_key = [](const Item& item) { return members(item); };
+constexpr auto by_members = [](const Item& item) { return members(item); };
 
 TEST_CASE("the records that come first are kept, for every number of slots", "[oclgrind]") {
     CELLIST_RANDOM(random, 250u);
@@ -54,7 +54,7 @@ TEST_CASE("the records that come first are kept, for every number of slots", "[o
         const BuildReport report = Inserter(lists).build(lists, inserts);
         require_report(report, 507, 7, kept(oracle_of(inserts, 12), 12, slots));
         require_sound(lists, report.stored);
-        require_first(lists, inserts, slots, by_key);
+        require_first(lists, inserts, slots, by_members);
     }
 }
 
@@ -69,10 +69,10 @@ TEST_CASE("hundreds of thousands of records are kept from in few passes") {
         const BuildReport report = inserter.build(lists, inserts);
         require_report(report, 300'000, 0, 16'000);
         REQUIRE(report.passes <= 4);
-        require_first(lists, inserts, 16, by_key);
+        require_first(lists, inserts, 16, by_members);
     }
     lists.sort(&Item::key);
-    require_first(lists, inserts, 16, by_key);
+    require_first(lists, inserts, 16, by_members);
 }
 
 TEST_CASE("ties are decided by the other members, the same in every order of insertion") {
@@ -88,7 +88,7 @@ TEST_CASE("ties are decided by the other members, the same in every order of ins
         const BuildReport report = inserter.build(lists, inserts);
         require_report(report, 3000, 0, 70);
         REQUIRE(report.passes == 4);
-        require_first(lists, inserts, 10, by_key);
+        require_first(lists, inserts, 10, by_members);
         lists.sort(&Item::key);
         const std::vector<Item> records = lists.download().records();
         if (i == 0) first = records;
@@ -112,7 +112,7 @@ TEST_CASE("ties that take more than the budget end a build, and leave the lists 
     REQUIRE(contains(error.what(), "budget"));
     REQUIRE(lists.lengths().total == 0);
     require_report(inserter.build(lists, others), 300, 0, 70);
-    require_first(lists, others, 10, by_key);
+    require_first(lists, others, 10, by_members);
 }
 
 TEST_CASE("records that are the same in every member are kept as often as there is room") {
@@ -121,7 +121,7 @@ TEST_CASE("records that are the same in every member are kept as often as there 
     Lists<Item> lists(device(), {3}, {.storage = nearest(&Item::key, 5)});
     const BuildReport report = Inserter(lists).build(lists, inserts);
     require_report(report, 1000, 0, 15);
-    require_first(lists, inserts, 5, by_key);
+    require_first(lists, inserts, 5, by_members);
 }
 
 TEST_CASE("no option but the budget changes what keeps the nearest") {
@@ -136,7 +136,7 @@ TEST_CASE("no option but the budget changes what keeps the nearest") {
         REQUIRE(lists.storage() == Storage::fixed);
         require_report(Inserter(lists).build(lists, inserts), 500, 0, 20);
         require_sound(lists, 20);
-        require_first(lists, inserts, 4, by_key);
+        require_first(lists, inserts, 4, by_members);
     }
 }
 
@@ -170,7 +170,7 @@ TEST_CASE("a build that keeps the nearest is started without blocking, and besid
         },
         few, all);
     few.sort(&Item::key);
-    require_first(few, inserts, 10, by_key);
+    require_first(few, inserts, 10, by_members);
     const auto [report_few, report_all] = pending.get();
     require_report(report_few, 3000, 0, 70);
     require_complete(report_all, 3000);

@@ -11,7 +11,7 @@ CELLIST_STRUCT(Glow, strength);
 
 namespace {
 
-constexpr auto source = R"(
+constexpr auto arguments_source = R"(
 #include <cellist/lists.clh>
 kernel void arguments(CELLIST_LISTS(Item, lists), global uint* out, uint count, float4 offset,
                       const Item item, ulong wide, uchar small, local uint* scratch,
@@ -24,7 +24,7 @@ kernel void arguments(CELLIST_LISTS(Item, lists), global uint* out, uint count, 
 
 struct Fixture {
     Lists<Item> lists{device(), {5}};
-    Kernel kernel{device(), source, "arguments", lists};
+    Kernel kernel{device(), arguments_source, "arguments", lists};
     Buffer<cl_uint> out{device(), 1};
     Buffer<cl_float> table{device(), std::vector<cl_float>{1, 500000, 3}};
     cl_float4 offset{{1, 2, 3, 4000}};

@@ -8,7 +8,7 @@
 namespace cellist::test {
 namespace {
 
-constexpr auto source = R"(
+constexpr auto objects_source = R"(
 kernel void buffer(uint n, global float* x) { x[0] = n; }
 kernel void table(constant float* x, global float* y) { y[0] = x[0]; }
 kernel void reads2(uint n, read_only image2d_t i) {}
@@ -30,7 +30,7 @@ struct Objects {
     const cl::Context& context = device().context();
     cl::ImageFormat format{CL_RGBA, CL_FLOAT};
 
-    Kernel kernel(const std::string& name) { return {device(), source, name}; }
+    Kernel kernel(const std::string& name) { return {device(), objects_source, name}; }
 };
 
 /// The message of a launch with an argument that does not fit.

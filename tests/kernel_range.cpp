@@ -5,7 +5,7 @@
 namespace cellist::test {
 namespace {
 
-constexpr auto source = R"(
+constexpr auto visit_source = R"(
 kernel void visit(global uint* visits, uint size)
 {
     const uint x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
@@ -19,7 +19,7 @@ kernel void visit(global uint* visits, uint size)
 )";
 
 TEST_CASE("every range runs exactly its work-items, primes and empty ranges too") {
-    Kernel kernel(device(), source, "visit");
+    Kernel kernel(device(), visit_source, "visit");
     for (const Range& range :
          {Range(0), Range(1), Range(7), Range(64), Range(101), Range(1000), Range(7919),
           Range(65'537), Range(0, 5), Range(5, 0), Range(13, 17), Range(1, 97), Range(97, 1),
@@ -40,7 +40,7 @@ TEST_CASE("every range runs exactly its work-items, primes and empty ranges too"
 }
 
 TEST_CASE("a range with a local size runs in such work-groups") {
-    Kernel kernel(device(), source, "visit");
+    Kernel kernel(device(), visit_source, "visit");
     Range range(96);
     range.local = {32, 1, 1};
     Buffer<cl_uint> visits(device(), 99);
@@ -59,7 +59,7 @@ TEST_CASE("a padded range is the next multiple of the work-group") {
 }
 
 TEST_CASE("an impossible work-group is an error and leaves the kernel usable") {
-    Kernel kernel(device(), source, "visit");
+    Kernel kernel(device(), visit_source, "visit");
     Buffer<cl_uint> visits(device(), 103);
     Range range(100);
     range.local = {std::size_t{1} << 30, 1, 1};

@@ -9,7 +9,7 @@ namespace cellist::test {
 namespace {
 
 /// The member is part of a name in the library, so it cannot be a macro.
-std::string source(const std::string& key) {
+std::string nearest_source(const std::string& key) {
     return R"(
 #include <cellist/lists.clh>
 kernel void nearest(CELLIST_LISTS(Item, lists), global Item* out, global uint* found)
@@ -33,7 +33,8 @@ void require_nearest(const Lists<Item>& lists, const Inserts<Item>& inserts, cl_
                      const std::string& key, Before before) {
     INFO(k << " nearest by " << key);
     const std::uint64_t cells = lists.shape().cells();
-    Kernel kernel(device(), Source{.text = source(key), .options = "-DK=" + std::to_string(k)},
+    Kernel kernel(device(),
+                  Source{.text = nearest_source(key), .options = "-DK=" + std::to_string(k)},
                   "nearest", lists);
     const Buffer<Item> device_out(device(), (cells + 1) * k);
     const Buffer<cl_uint> device_found(device(), cells + 1);

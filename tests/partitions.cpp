@@ -14,17 +14,19 @@ struct Word {
 };
 CELLIST_STRUCT(Word, id);
 
-struct Wide {
+struct WideRecord {
     cl_double at;
     cl_float color[4];
     cl_uint id;
     cl_uint other;
 };
-CELLIST_STRUCT(Wide, at, color, id, other);
+CELLIST_STRUCT(WideRecord, at, color, id, other);
 
 Word make(cl_uint id, const Word*) { return {id}; }
 Item make(cl_uint id, const Item*) { return {static_cast<cl_float>(id % 97), id}; }
-Wide make(cl_uint id, const Wide*) { return {0.5 * id, {1.0f, 2.0f, 3.0f, 4.0f}, id, ~id}; }
+WideRecord make(cl_uint id, const WideRecord*) {
+    return {0.5 * id, {1.0f, 2.0f, 3.0f, 4.0f}, id, ~id};
+}
 
 /// Which cell the i-th record goes to: any, neighbours by turns, runs, or one.
 cl_uint cell_of(std::uint32_t pattern, std::uint32_t i, std::uint32_t cells, std::mt19937& random) {
@@ -61,7 +63,7 @@ TEST_CASE("builds in one pass hold the records of every size, pattern and number
             build_twice<Item>(cells, pattern, 2048);
         }
         build_twice<Word>(1000, pattern, 100'001);
-        if (device().info().fp64) build_twice<Wide>(1000, pattern, 10'000);
+        if (device().info().fp64) build_twice<WideRecord>(1000, pattern, 10'000);
     }
 }
 

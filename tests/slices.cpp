@@ -6,24 +6,6 @@
 namespace cellist::test {
 namespace {
 
-/// Runs a kernel that makes Inserts.
-struct Scene {
-    Scene(const Lists<Item>& lists, const Inserts<Item>& what)
-        : inserts(what),
-          cells(device(), what.cells),
-          records(device(), what.records),
-          kernel(device(), insert_source("Item"), "insert_all", lists) {}
-    void insert(Lists<Item>& lists) {
-        const auto count = static_cast<cl_uint>(inserts.size());
-        kernel.run(Range::padded(count, 64), lists, cells, records, count);
-    }
-
-    Inserts<Item> inserts;
-    Buffer<cl_uint> cells;
-    Buffer<Item> records;
-    Kernel kernel;
-};
-
 /// Downloads every slice, and requires that slices are in order, cover all cells, and leave no
 /// record in the cells of other slices.
 struct Collected {
@@ -78,7 +60,7 @@ TEST_CASE("slices together hold every record, whatever the pool may hold") {
                            .capacity_nodes = 0,
                            .slots = 0,
                            .budget_bytes = empty.pool_bytes() + pool_bytes});
-        Scene scene(lists, inserts);
+        UploadedInserts scene(lists, inserts);
         Collected collected(lists);
         const BuildReport report =
             lists.build_slices([&] { scene.insert(lists); }, std::ref(collected));
@@ -111,7 +93,7 @@ TEST_CASE("slices keep within the capacity where the pool may not grow") {
     const Inserts<Item> inserts = random_inserts(4096, 100, random);
     Lists<Item> lists(device(), {100},
                       {.storage = storage, .overflow = overflow, .capacity_nodes = 300});
-    Scene scene(lists, inserts);
+    UploadedInserts scene(lists, inserts);
     Collected collected(lists);
     const BuildReport report =
         lists.build_slices([&] { scene.insert(lists); }, std::ref(collected));
@@ -128,7 +110,7 @@ TEST_CASE("a list that is longer than the pool throws, or is dropped from") {
     for (cl_uint i = 0; i < 200; ++i) inserts.add(20, {0.0f, 93 + i});
     for (const Overflow overflow : {Overflow::stop, Overflow::drop}) {
         Lists<Item> lists(device(), {50}, {.overflow = overflow, .capacity_nodes = 100});
-        Scene scene(lists, inserts);
+        UploadedInserts scene(lists, inserts);
         Collected collected(lists);
         const auto build = [&] {
             return lists.build_slices([&] { scene.insert(lists); }, std::ref(collected));
@@ -165,7 +147,7 @@ TEST_CASE("a list that is over the budget throws") {
                            .capacity_nodes = 0,
                            .slots = 0,
                            .budget_bytes = empty.pool_bytes() + hot * node_bytes - missing_bytes});
-        Scene scene(lists, inserts);
+        UploadedInserts scene(lists, inserts);
         Collected collected(lists);
         const auto build = [&] {
             return lists.build_slices([&] { scene.insert(lists); }, std::ref(collected));
@@ -185,7 +167,7 @@ TEST_CASE("an error inside of a slice leaves an empty container") {
     CELLIST_RANDOM(random, 233u);
     const Inserts<Item> inserts = random_inserts(4096, 50, random);
     Lists<Item> lists(device(), {50}, {.storage = storage, .budget_bytes = 10'000});
-    Scene scene(lists, inserts);
+    UploadedInserts scene(lists, inserts);
     const auto insert = [&] { scene.insert(lists); };
     int calls = 0;
     const auto error = error_of<std::runtime_error>([&] {
@@ -209,7 +191,7 @@ TEST_CASE("a kernel that inserts other records into the slices than it counted i
     const Inserts<Item> inserts = random_inserts(4096, 50, random);
     const Inserts<Item> fewer = random_inserts(4000, 50, random);
     Lists<Item> lists(device(), {50}, {.budget_bytes = 20'000});
-    Scene scene(lists, inserts), other(lists, fewer);
+    UploadedInserts scene(lists, inserts), other(lists, fewer);
     int calls = 0;
     const auto error = error_of([&] {
         lists.build_slices([&] { (++calls < 3 ? scene : other).insert(lists); },
@@ -224,7 +206,7 @@ TEST_CASE("a shape without cells has no slices") {
     CELLIST_EACH_STORAGE(storage);
     CELLIST_RANDOM(random, 235u);
     Lists<Item> lists(device(), {0, 3}, {.storage = storage});
-    Scene scene(lists, random_inserts(144, 50, random));
+    UploadedInserts scene(lists, random_inserts(144, 50, random));
     const BuildReport report = lists.build_slices([&] { scene.insert(lists); },
                                                   [](const Slice&) { FAIL("there is no cell"); });
     REQUIRE(report.rejected == 144);

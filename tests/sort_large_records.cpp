@@ -8,26 +8,26 @@ namespace cellist::test {
 namespace {
 
 /// Of 65,540 bytes: a multiple of 4 and of no larger vector.
-struct Large {
+struct LargeRecord {
     cl_uint key;
     cl_uint id;
     cl_uint values[16383];
 };
-CELLIST_STRUCT(Large, key, id, values);
-static_assert(sizeof(Large) == 65540);
+CELLIST_STRUCT(LargeRecord, key, id, values);
+static_assert(sizeof(LargeRecord) == 65540);
 
 /// Of 257 bytes.
-struct Odd {
+struct OddRecord {
     cl_uchar key;
     cl_uchar id;
     cl_uchar values[255];
 };
-CELLIST_STRUCT(Odd, key, id, values);
-static_assert(sizeof(Odd) == 257);
+CELLIST_STRUCT(OddRecord, key, id, values);
+static_assert(sizeof(OddRecord) == 257);
 
 /// Writes no copy of a record but the argument of an insert. Every byte tells whose it is.
 template <class T>
-std::string source() {
+std::string insert_large_source() {
     const std::string type = DeviceType<T>::name();
     return R"(
 #include <cellist/lists.clh>
@@ -78,7 +78,7 @@ void sort_in_every_way(std::size_t count, cl_device_type division, Storage stora
     const Buffer<T> input(device(), all);
     Lists<T> lists(device(), {3}, {.storage = storage});
     sort_as_on(lists, division);
-    Kernel insert(device(), source<T>(), "insert", lists);
+    Kernel insert(device(), insert_large_source<T>(), "insert", lists);
     Range range = Range::padded(count, 2);
     range.local = {2, 1, 1};
     const auto build = [&] {
@@ -101,12 +101,12 @@ TEST_CASE("records of up to 64 KiB are sorted, packed and downloaded") {
     const Storage storage = GENERATE(Storage::linked, Storage::counted);
     INFO(name_of(storage));
     SECTION("of 257 bytes, as on a GPU") {
-        sort_in_every_way<Odd>(900, CL_DEVICE_TYPE_GPU, storage);
+        sort_in_every_way<OddRecord>(900, CL_DEVICE_TYPE_GPU, storage);
     }
     SECTION("of 65,540 bytes") {
         // The device's own way: a GPU has no private memory for a CPU's way. On NVIDIA, the test
         // needs the GPU for itself: see docs/devices.md.
-        sort_in_every_way<Large>(60, device().info().type, storage);
+        sort_in_every_way<LargeRecord>(60, device().info().type, storage);
     }
 }
 

@@ -102,7 +102,7 @@ void require_equal(const Everything& a, const Everything& b) {
     REQUIRE(a.scalar == b.scalar);
 }
 
-constexpr auto source = R"(
+constexpr auto everything_source = R"(
 #include <cellist/lists.clh>
 
 // The same values as example() in the host program, by the members' names.
@@ -159,7 +159,7 @@ kernel void compare(Everything by_value, global const Everything* in, global uin
 
 TEST_CASE("values that the device writes are read by the host, member by member") {
     const Buffer<Everything> out(device(), 3);
-    Kernel write(device(), source, "write_all", type<Everything>);
+    Kernel write(device(), everything_source, "write_all", type<Everything>);
     write.run(3, out);
     for (const Everything& everything : out.download()) require_equal(everything, example());
 }
@@ -167,7 +167,7 @@ TEST_CASE("values that the device writes are read by the host, member by member"
 TEST_CASE("values that the host writes are read by the device, by value and in buffers") {
     const Buffer<Everything> in(device(), std::vector<Everything>{example()});
     const Buffer<cl_uint> same(device(), 4);
-    Kernel compare(device(), source, "compare", type<Everything>);
+    Kernel compare(device(), everything_source, "compare", type<Everything>);
     compare.run(1, example(), in, same);
     REQUIRE(same.download() == std::vector<cl_uint>{1, 1, 1, sizeof(Everything)});
 
@@ -180,7 +180,7 @@ TEST_CASE("values that the host writes are read by the device, by value and in b
 
 TEST_CASE("records of many members and padding are inserted, sorted and downloaded") {
     Lists<Everything> lists(device(), {5});
-    Kernel insert(device(), source, "insert_all", lists);
+    Kernel insert(device(), everything_source, "insert_all", lists);
     require_complete(lists.build(insert, 6), 5, 1);
     lists.sort(&Everything::kind);
     lists.sort(&Everything::native_long);

@@ -9,7 +9,7 @@
 namespace cellist::test {
 namespace {
 
-constexpr auto source = R"(
+constexpr auto vary_source = R"(
 #include <cellist/lists.clh>
 
 #define UNTOUCHED 0xABCDABCDu
@@ -67,8 +67,8 @@ kernel void check(CELLIST_LISTS(Item, lists), volatile global uint* written,
 }
 )";
 
-constexpr cl_uint cells = 6;
-constexpr cl_uint records = 60;
+constexpr cl_uint varied_cells = 6;
+constexpr cl_uint varied_records = 60;
 constexpr cl_uint ways = 14;
 
 /// Ways that insert as many records into each cell, and reject as many.
@@ -82,29 +82,30 @@ void require_errors(const std::vector<ListsOptions>& all_options) {
     wrong.fill(0);
     int thrown = 0;
     for (const ListsOptions& options : all_options) {
-        Lists<Item> lists(device(), {cells}, options);
-        Kernel vary(device(), source, "vary", lists);
-        Kernel prepare(device(), source, "prepare", lists);
-        Kernel check(device(), source, "check", lists);
+        Lists<Item> lists(device(), {varied_cells}, options);
+        Kernel vary(device(), vary_source, "vary", lists);
+        Kernel prepare(device(), vary_source, "prepare", lists);
+        Kernel check(device(), vary_source, "check", lists);
         const auto build = [&](cl_uint way) {
             runs.fill(0);
             written.fill(0);
             return lists.build([&] {
                 prepare.run(lists.capacity_nodes(), lists);
-                vary.run(records, lists, way, runs);
+                vary.run(varied_records, lists, way, runs);
                 check.run(lists.capacity_nodes(), lists, written, wrong);
             });
         };
         const std::uint64_t kept = std::min<std::uint64_t>(
-            records, options.overflow == Overflow::drop ? *options.capacity_nodes : records);
+            varied_records,
+            options.overflow == Overflow::drop ? *options.capacity_nodes : varied_records);
         for (cl_uint way = 0; way < ways; ++way) {
             INFO("way " << way << ", policy " << static_cast<int>(options.overflow) << ", capacity "
                         << options.capacity_nodes.value_or(0));
             if (repeats_counts(way)) {
                 const BuildReport report = build(way);
                 REQUIRE(report.stored == kept);
-                REQUIRE(report.attempted == records);
-                REQUIRE(report.dropped == records - kept);
+                REQUIRE(report.attempted == varied_records);
+                REQUIRE(report.dropped == varied_records - kept);
             } else {
                 const Error error = error_of([&] { build(way); });
                 INFO(error.what());
@@ -143,20 +144,20 @@ TEST_CASE("a kernel that does not repeat itself ends in an error, with room for 
 }
 
 TEST_CASE("the second pass decides which records are stored") {
-    Lists<Item> lists(device(), {cells}, {.storage = Storage::counted});
-    Kernel vary(device(), source, "vary", lists);
+    Lists<Item> lists(device(), {varied_cells}, {.storage = Storage::counted});
+    Kernel vary(device(), vary_source, "vary", lists);
     Buffer<cl_uint> runs(device(), 1);
     runs.fill(0);
-    require_complete(lists.build(vary, records, cl_uint{1}, runs), records);
+    require_complete(lists.build(vary, varied_records, cl_uint{1}, runs), varied_records);
     const HostLists<Item> found = lists.download();
-    std::vector<bool> seen(records, false);
-    for (std::uint64_t cell = 0; cell < cells; ++cell)
+    std::vector<bool> seen(varied_records, false);
+    for (std::uint64_t cell = 0; cell < varied_cells; ++cell)
         for (const Item& item : found.cell(cell)) {
-            REQUIRE(item.id >= records);
-            REQUIRE(item.id < 2 * records);
-            REQUIRE((item.id - records) % cells == cell);
-            REQUIRE_FALSE(seen[item.id - records]);
-            seen[item.id - records] = true;
+            REQUIRE(item.id >= varied_records);
+            REQUIRE(item.id < 2 * varied_records);
+            REQUIRE((item.id - varied_records) % varied_cells == cell);
+            REQUIRE_FALSE(seen[item.id - varied_records]);
+            seen[item.id - varied_records] = true;
         }
 }
 

@@ -6,7 +6,7 @@
 namespace cellist::test {
 namespace {
 
-constexpr auto source = R"(
+constexpr auto vary_nearest_source = R"(
 #include <cellist/lists.clh>
 
 // Work-item i inserts into cell i % cells. `runs` counts the work-items that ever ran.
@@ -33,7 +33,7 @@ TEST_CASE("a kernel that does not repeat itself while the nearest are kept ends 
     Buffer<cl_uint> runs(device(), 1);
     for (const cl_uint slots : {1u, 4u, 200u}) {
         Lists<Item> lists(device(), {10}, {.storage = nearest(&Item::key, slots)});
-        Kernel vary(device(), source, "vary", lists);
+        Kernel vary(device(), vary_nearest_source, "vary", lists);
         const auto build = [&](cl_uint way) {
             runs.fill(0);
             return lists.build(vary, 1000, way, runs);

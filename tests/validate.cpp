@@ -5,7 +5,7 @@
 namespace cellist::test {
 namespace {
 
-constexpr auto source = R"(
+constexpr auto corrupt_linked_source = R"(
 #include <cellist/lists.clh>
 
 static uint last_of(CELLIST_LISTS(Item, lists), uint cell)
@@ -49,13 +49,13 @@ kernel void scramble(CELLIST_LISTS(Item, lists), uint seed, uint range)
 }
 )";
 
-class Corruption {
+class LinkedCorruption {
 public:
     static constexpr cl_uint cells = 10;
     static constexpr cl_uint length = 30;  ///< nodes of each list
     static constexpr cl_uint capacity = 5000;
 
-    Corruption() : lists(device(), {cells}, {.capacity_nodes = capacity}), inserter_(lists) {
+    LinkedCorruption() : lists(device(), {cells}, {.capacity_nodes = capacity}), inserter_(lists) {
         for (cl_uint i = 0; i < cells * length; ++i)
             inserts_.add(i % cells, {static_cast<cl_float>(i), i});
         restore();
@@ -68,7 +68,7 @@ public:
 
     template <class... Args>
     Validation after(const std::string& kernel, const Range& range, const Args&... args) {
-        Kernel(device(), source, kernel, lists).run(range, lists, args...);
+        Kernel(device(), corrupt_linked_source, kernel, lists).run(range, lists, args...);
         const Validation validation = lists.validate();
         REQUIRE_FALSE(validation.ok());
         return validation;
@@ -90,7 +90,7 @@ void require_findings(const Validation& found, std::uint64_t broken, std::uint64
 }
 
 TEST_CASE("a link that leads out of the pool is found") {
-    Corruption corruption;
+    LinkedCorruption corruption;
     for (const cl_uint node : {5000u, 5001u, 0x7FFFFFFFu, 0x80000000u, 0xFFFFFFFEu}) {
         INFO("node " << node);
         const Validation found = corruption.after("set_second", 1, cl_uint{6}, node);
@@ -102,7 +102,7 @@ TEST_CASE("a link that leads out of the pool is found") {
 }
 
 TEST_CASE("a head that leads out of the pool is found") {
-    Corruption corruption;
+    LinkedCorruption corruption;
     for (const cl_uint node : {5000u, 0x12345678u, 0xFFFFFFFEu}) {
         INFO("node " << node);
         const Validation found = corruption.after("set_head", 1, cl_uint{3}, node);
@@ -112,56 +112,56 @@ TEST_CASE("a head that leads out of the pool is found") {
 }
 
 TEST_CASE("links and heads that lead to a node that was never allocated are found") {
-    Corruption corruption;
+    LinkedCorruption corruption;
     require_findings(corruption.after("set_second", 1, cl_uint{9}, cl_uint{4999}), 1, 0, 29);
     require_findings(corruption.after("set_head", 1, cl_uint{2}, cl_uint{4998}), 2, 0, 29 + 30);
     REQUIRE(corruption.lists.validate().first_bad_cell == 2);
 }
 
 TEST_CASE("a node that links to itself is found") {
-    Corruption corruption;
+    LinkedCorruption corruption;
     const Validation found = corruption.after("self_cycle", 1, cl_uint{4});
     require_findings(found, 0, 1, 29);
     REQUIRE(found.first_bad_cell == 4);
 }
 
 TEST_CASE("a list that ends in its own first node is found") {
-    Corruption corruption;
+    LinkedCorruption corruption;
     const Validation found = corruption.after("long_cycle", 1, cl_uint{0});
     require_findings(found, 0, 1, 0);
     REQUIRE(found.first_bad_cell == 0);
 }
 
 TEST_CASE("two lists that share their tail are found") {
-    Corruption corruption;
+    LinkedCorruption corruption;
     const Validation found = corruption.after("share_tail", 1, cl_uint{7}, cl_uint{5});
     require_findings(found, 0, 1, 0);
     REQUIRE((found.first_bad_cell == 7 || found.first_bad_cell == 5));
 }
 
 TEST_CASE("two heads that lead to one list are found") {
-    Corruption corruption;
+    LinkedCorruption corruption;
     const Validation found = corruption.after("share_head", 1, cl_uint{8}, cl_uint{1});
     require_findings(found, 0, 1, 30);
     REQUIRE((found.first_bad_cell == 8 || found.first_bad_cell == 1));
 }
 
 TEST_CASE("nodes that no head leads to are found") {
-    Corruption corruption;
+    LinkedCorruption corruption;
     require_findings(corruption.after("set_head", 1, cl_uint{3}, cl_uint{0xFFFFFFFFu}), 0, 0, 30);
     require_findings(corruption.after("set_second", 1, cl_uint{4}, cl_uint{0xFFFFFFFFu}), 0, 0, 59);
 }
 
 TEST_CASE("scrambled heads and links are found and end") {
-    Corruption corruption;
+    LinkedCorruption corruption;
     for (cl_uint seed = 0; seed < 20; ++seed)
         for (const cl_uint range : {1u, 300u, 5000u, 10'000u, 0xFFFFFFFFu}) {
             INFO("seed " << seed << ", range " << range);
             const Validation found =
-                corruption.after("scramble", Corruption::capacity, seed, range);
+                corruption.after("scramble", LinkedCorruption::capacity, seed, range);
             // Each walk ends at its first bad link.
-            REQUIRE(found.broken_links + found.repeated_nodes <= Corruption::cells);
-            REQUIRE(found.lost_nodes <= Corruption::cells * Corruption::length);
+            REQUIRE(found.broken_links + found.repeated_nodes <= LinkedCorruption::cells);
+            REQUIRE(found.lost_nodes <= LinkedCorruption::cells * LinkedCorruption::length);
         }
     corruption.restore();
 }

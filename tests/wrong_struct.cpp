@@ -13,13 +13,13 @@ struct Swapped {
 };
 CELLIST_STRUCT(Swapped, id, key);
 
-struct Wide {
+struct WiderItem {
     cl_float key;
     cl_uint id;
     cl_float weight;
     cl_float2 place;
 };
-CELLIST_STRUCT(Wide, key, id, weight, place);
+CELLIST_STRUCT(WiderItem, key, id, weight, place);
 
 /// The error of a kernel whose third line has the mistake.
 std::string error_of_line(const std::string& line, const std::string& functions = "") {
@@ -29,7 +29,7 @@ std::string error_of_line(const std::string& line, const std::string& functions 
         .file_name = "user.cl"};
     INFO(line);
     const auto error = error_of<OpenClError>(
-        [&] { Kernel(device(), source, "f", lists, type<Swapped>, type<Wide>); });
+        [&] { Kernel(device(), source, "f", lists, type<Swapped>, type<WiderItem>); });
     INFO(error.what());
     REQUIRE(contains(error.log(), "user.cl:3:"));
     REQUIRE_FALSE(contains(error.log(), "hint: name a Lists"));
@@ -37,7 +37,7 @@ std::string error_of_line(const std::string& line, const std::string& functions 
 }
 
 TEST_CASE("records of another struct are inserted and copied nowhere", "[oclgrind]") {
-    for (const std::string name : {"Swapped", "Wide"})
+    for (const std::string name : {"Swapped", "WiderItem"})
         for (const std::string call : {
                  "cellist_insert(lists, 0, other);",
                  "other = cellist_get(lists, 0);",
@@ -55,7 +55,7 @@ TEST_CASE("records of another struct are inserted and copied nowhere", "[oclgrin
 }
 
 TEST_CASE("a container is not handed on to a function that takes other records", "[oclgrind]") {
-    for (const std::string name : {"Swapped", "Wide"}) {
+    for (const std::string name : {"Swapped", "WiderItem"}) {
         const std::string what = error_of_line("    put(CELLIST_PASS(lists));",
                                                "void put(CELLIST_LISTS(" + name + ", others)) {}");
         REQUIRE(contains(what, "cellist_view_Item"));
@@ -68,7 +68,7 @@ TEST_CASE("the nearest are not taken by a member of another struct, or by a vect
         error_of_line("Item out[2]; cellist_nearest(lists, 0, weight, 2, out);");
     REQUIRE(contains(other, "'weight'"));
     REQUIRE(contains(other, "struct Item'"));
-    REQUIRE(contains(error_of_line("} void g(CELLIST_LISTS(Wide, wide)) { Wide out[2]; "
+    REQUIRE(contains(error_of_line("} void g(CELLIST_LISTS(WiderItem, wide)) { WiderItem out[2]; "
                                    "cellist_nearest(wide, 0, place, 2, out);"),
                      "place"));
 }

@@ -183,44 +183,42 @@ void build_slices(Scene& scene) {
     }
 }
 
-constexpr auto empty = Contents::empty;
-constexpr auto full = Contents::full;
-constexpr auto first = Use::first;
-constexpr auto repeated = Use::repeated;
-
-constexpr Operation table[] = {
-    {"build", empty, build},
-    {"build over full lists", full, build, repeated},
-    {"build that grows", empty, build, first, Room::none},
-    {"build that may drop", empty, build, repeated, Room::enough, Overflow::drop},
-    {"build that may stop", empty, build, repeated, Room::enough, Overflow::stop},
-    {"build that stops", empty, build_and_stop, repeated, Room::too_little, Overflow::stop},
-    {"build that keeps the nearest", empty, build, repeated, Room::enough, Overflow::grow,
-     Kind::nearest},
-    {"build later", full, build_later, repeated},
-    {"build later and grow", empty, build_later, first, Room::too_little},
-    {"build later and read", empty, build_later_and_read, repeated},
-    {"build later, drop and read", empty, build_later_and_read, repeated, Room::enough,
-     Overflow::drop},
-    {"build later, drop and validate", empty, build_later_and_validate, repeated, Room::enough,
-     Overflow::drop},
-    {"build later, drop and pack", empty, build_later_and_pack, repeated, Room::enough,
-     Overflow::drop},
-    {"abandon a build", full, abandon_a_build, repeated},
-    {"build in an automatic storage", empty, build_automatic, first, Room::enough, Overflow::grow,
-     Kind::automatic},
-    {"build two containers", empty, build_both, repeated},
-    {"build two containers that grow", empty, build_both, first, Room::too_little},
-    {"build two containers later", empty, build_both_later, repeated},
-    {"build beside another container", empty, build_beside_another, repeated, Room::enough,
-     Overflow::grow},
-    {"build by a kernel on another queue", empty, build_by_another_queue, repeated, Room::enough,
-     Overflow::grow},
-    {"build slices", empty, build_slices, repeated, Room::for_a_part, Overflow::grow},
-};
-
 }  // namespace
 
-std::span<const Operation> build_operations() { return table; }
+std::span<const Operation> build_operations() {
+    using enum Contents;
+    using enum Use;
+    static constexpr Operation table[] = {
+        {"build", empty, build},
+        {"build over full lists", full, build, repeated},
+        {"build that grows", empty, build, first, Room::none},
+        {"build that may drop", empty, build, repeated, Room::enough, Overflow::drop},
+        {"build that may stop", empty, build, repeated, Room::enough, Overflow::stop},
+        {"build that stops", empty, build_and_stop, repeated, Room::too_little, Overflow::stop},
+        {"build that keeps the nearest", empty, build, repeated, Room::enough, Overflow::grow,
+         Kind::nearest},
+        {"build later", full, build_later, repeated},
+        {"build later and grow", empty, build_later, first, Room::too_little},
+        {"build later and read", empty, build_later_and_read, repeated},
+        {"build later, drop and read", empty, build_later_and_read, repeated, Room::enough,
+         Overflow::drop},
+        {"build later, drop and validate", empty, build_later_and_validate, repeated, Room::enough,
+         Overflow::drop},
+        {"build later, drop and pack", empty, build_later_and_pack, repeated, Room::enough,
+         Overflow::drop},
+        {"abandon a build", full, abandon_a_build, repeated},
+        {"build in an automatic storage", empty, build_automatic, first, Room::enough,
+         Overflow::grow, Kind::automatic},
+        {"build two containers", empty, build_both, repeated},
+        {"build two containers that grow", empty, build_both, first, Room::too_little},
+        {"build two containers later", empty, build_both_later, repeated},
+        {"build beside another container", empty, build_beside_another, repeated, Room::enough,
+         Overflow::grow},
+        {"build by a kernel on another queue", empty, build_by_another_queue, repeated,
+         Room::enough, Overflow::grow},
+        {"build slices", empty, build_slices, repeated, Room::for_a_part, Overflow::grow},
+    };
+    return table;
+}
 
 }  // namespace cellist::test

@@ -44,19 +44,18 @@ void clear(Scene& scene) {
     scene.lists.clear();
 }
 
-constexpr auto empty = Contents::empty;
-constexpr auto full = Contents::full;
-
-constexpr Operation table[] = {
-    {"make a container", empty, make_a_container},
-    {"make a kernel", empty, make_a_kernel},
-    {"use buffers", empty, use_buffers},
-    {"wait for events", empty, wait_for_events},
-    {"clear", full, clear},
-};
-
 }  // namespace
 
-std::span<const Operation> object_operations() { return table; }
+std::span<const Operation> object_operations() {
+    using enum Contents;
+    static constexpr Operation table[] = {
+        {"make a container", empty, make_a_container},
+        {"make a kernel", empty, make_a_kernel},
+        {"use buffers", empty, use_buffers},
+        {"wait for events", empty, wait_for_events},
+        {"clear", full, clear},
+    };
+    return table;
+}
 
 }  // namespace cellist::test

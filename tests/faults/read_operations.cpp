@@ -37,21 +37,21 @@ void read_in_a_kernel(Scene& scene) {
     }
 }
 
-constexpr auto full = Contents::full;
-constexpr auto repeated = Use::repeated;
-
-constexpr Operation table[] = {
-    {"lengths", full, lengths},
-    {"pack", full, pack, repeated},
-    {"pack a member", full, pack_a_member, repeated},
-    {"download", full, download},
-    {"validate", full, validate},
-    {"read later", full, read_later, repeated},
-    {"read in a kernel", full, read_in_a_kernel},
-};
-
 }  // namespace
 
-std::span<const Operation> read_operations() { return table; }
+std::span<const Operation> read_operations() {
+    using enum Contents;
+    using enum Use;
+    static constexpr Operation table[] = {
+        {"lengths", full, lengths},
+        {"pack", full, pack, repeated},
+        {"pack a member", full, pack_a_member, repeated},
+        {"download", full, download},
+        {"validate", full, validate},
+        {"read later", full, read_later, repeated},
+        {"read in a kernel", full, read_in_a_kernel},
+    };
+    return table;
+}
 
 }  // namespace cellist::test

@@ -77,22 +77,21 @@ void sort_a_long_list(Scene& scene) {
     REQUIRE(found() == expected);
 }
 
-constexpr auto full = Contents::full;
-constexpr auto first = Use::first;
-constexpr auto repeated = Use::repeated;
-
-constexpr Operation table[] = {
-    {"sort by a member", full, sort_by_a_member, first, Room::enough, Overflow::grow, Kind::plain,
-     true},
-    {"sort by an expression", full, sort_by_an_expression, repeated, Room::enough, Overflow::grow,
-     Kind::plain, true},
-    {"sort without blocking", full, sort_without_blocking},
-    {"sort a long list", full, sort_a_long_list, repeated, Room::enough, Overflow::grow,
-     Kind::plain, true},
-};
-
 }  // namespace
 
-std::span<const Operation> sort_operations() { return table; }
+std::span<const Operation> sort_operations() {
+    using enum Contents;
+    using enum Use;
+    static constexpr Operation table[] = {
+        {"sort by a member", full, sort_by_a_member, first, Room::enough, Overflow::grow,
+         Kind::plain, true},
+        {"sort by an expression", full, sort_by_an_expression, repeated, Room::enough,
+         Overflow::grow, Kind::plain, true},
+        {"sort without blocking", full, sort_without_blocking},
+        {"sort a long list", full, sort_a_long_list, repeated, Room::enough, Overflow::grow,
+         Kind::plain, true},
+    };
+    return table;
+}
 
 }  // namespace cellist::test

@@ -11,7 +11,7 @@ std::string repeated(const std::string& text, std::size_t count) {
     return out;
 }
 
-GltfScene triangle() {
+GltfScene scene_of_triangle() {
     GltfScene scene;
     scene.add_values(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}, 5126, "VEC3", 3);
     scene.add_primitive({{"attributes", {{"POSITION", 0}}}});
@@ -20,7 +20,7 @@ GltfScene triangle() {
 
 TEST_CASE("JSON that is nested deeply is refused") {
     for (const auto& [open, close] : {std::pair{"[", "]"}, {"{\"a\":", "}"}}) {
-        std::string text = triangle().gltf();
+        std::string text = scene_of_triangle().gltf();
         text.pop_back();
         text += ",\"extras\":" + repeated(open, 200000) + "1" + repeated(close, 200000) + "}";
         CHECK(contains(refusal("m.gltf", text), "nested 200001 levels"));
@@ -29,7 +29,7 @@ TEST_CASE("JSON that is nested deeply is refused") {
 }
 
 TEST_CASE("nodes may be nested deeply") {
-    GltfScene scene = triangle();
+    GltfScene scene = scene_of_triangle();
     constexpr std::size_t depth = 50000;
     json nodes = json::array();
     for (std::size_t i = 0; i < depth; ++i)
@@ -44,7 +44,7 @@ TEST_CASE("nodes may be nested deeply") {
 }
 
 TEST_CASE("instances that multiply a mesh beyond all measure are refused") {
-    GltfScene scene = triangle();
+    GltfScene scene = scene_of_triangle();
     const std::vector<std::uint8_t> indices(30000, 0);
     const std::size_t accessor = scene.add_values(indices, 5121, "SCALAR", 1);
     json primitives = json::array();

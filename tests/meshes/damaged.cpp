@@ -1,5 +1,6 @@
 // Damaged PLY, OFF and STL files are refused with the place of the damage, or loaded with a count
 // of what is missing.
+#include "meshes/support/loaded.hpp"
 #include "meshes/support/odd_file.hpp"
 #include "support/errors.hpp"
 
@@ -9,11 +10,11 @@ namespace {
 using support::InputError;
 using support::Mesh;
 
-const std::string head =
+const std::string ply_head =
     "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
     "property float y\nproperty float z\n";
 const std::string list = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
-const std::string corners = "0 0 0\n1 0 0\n0 1 0\n";
+const std::string ply_corners = "0 0 0\n1 0 0\n0 1 0\n";
 
 void check_refused(const std::string& name, const std::string& text, const std::string& part) {
     const Folder folder;
@@ -26,36 +27,32 @@ void check_refused(const std::string& name, const std::string& text, const std::
     CHECK(!contains(message, "\n"));
 }
 
-Mesh loaded(const std::string& name, const std::string& text) {
-    const Folder folder;
-    return support::load_mesh(folder.write(name, text));
-}
-
 TEST_CASE("damaged PLY headers are refused with the line") {
     check_refused("a.ply", "ply\nformat ascii 2.0\n" + list, "line 2");
     check_refused("a.ply", "ply\nformat text 1.0\n" + list, "line 2");
     check_refused("a.ply", "ply\nelement vertex 3\nproperty float x\nend_header\n", "format");
-    check_refused("a.ply", head + "property quad w\n" + list + corners, "'quad'");
-    check_refused("a.ply", head + "property float x\n" + list + corners, "second property");
-    check_refused("a.ply", head + "colour blue\n" + list + corners, "'colour'");
-    check_refused("a.ply", head + "element face -1\nend_header\n", "'-1'");
+    check_refused("a.ply", ply_head + "property quad w\n" + list + ply_corners, "'quad'");
+    check_refused("a.ply", ply_head + "property float x\n" + list + ply_corners, "second property");
+    check_refused("a.ply", ply_head + "colour blue\n" + list + ply_corners, "'colour'");
+    check_refused("a.ply", ply_head + "element face -1\nend_header\n", "'-1'");
     check_refused("a.ply", "ply\nformat ascii 1.0\nproperty float x\nend_header\n", "line 3");
+    check_refused("a.ply",
+                  ply_head + "element face 1\nproperty int vertex_indices\nend_header\n" +
+                      ply_corners + "3\n",
+                  "vertex_indices");
     check_refused(
-        "a.ply",
-        head + "element face 1\nproperty int vertex_indices\nend_header\n" + corners + "3\n",
-        "vertex_indices");
-    check_refused("a.ply", head.substr(0, head.find("property float z")) + list + corners, "'z'");
-    check_refused("a.ply", head, "does not end");
+        "a.ply", ply_head.substr(0, ply_head.find("property float z")) + list + ply_corners, "'z'");
+    check_refused("a.ply", ply_head, "does not end");
 }
 
 TEST_CASE("damaged PLY data are refused with the line or the byte") {
-    check_refused("a.ply", head + list + "0 0 0\n1 0x10 0\n0 1 0\n3 0 1 2\n", "'0x10'");
-    check_refused("a.ply", head + list + "0 0 0\n1 1,5 0\n0 1 0\n3 0 1 2\n", "line 11");
-    check_refused("a.ply", head + list + "0 0 0\n1 0\n0 1 0\n3 0 1 2\n", "line");
-    check_refused("a.ply", head + list + "0 0 0 9\n1 0 0 9\n0 1 0 9\n3 0 1 2\n", "line 10");
-    check_refused("a.ply", head + list + corners + "-3 0 1 2\n", "-3");
-    check_refused("a.ply", head + list + corners + "4 0 1 2\n", "it has 0");
-    check_refused("a.ply", head + list + corners, "it has 0");
+    check_refused("a.ply", ply_head + list + "0 0 0\n1 0x10 0\n0 1 0\n3 0 1 2\n", "'0x10'");
+    check_refused("a.ply", ply_head + list + "0 0 0\n1 1,5 0\n0 1 0\n3 0 1 2\n", "line 11");
+    check_refused("a.ply", ply_head + list + "0 0 0\n1 0\n0 1 0\n3 0 1 2\n", "line");
+    check_refused("a.ply", ply_head + list + "0 0 0 9\n1 0 0 9\n0 1 0 9\n3 0 1 2\n", "line 10");
+    check_refused("a.ply", ply_head + list + ply_corners + "-3 0 1 2\n", "-3");
+    check_refused("a.ply", ply_head + list + ply_corners + "4 0 1 2\n", "it has 0");
+    check_refused("a.ply", ply_head + list + ply_corners, "it has 0");
 }
 
 TEST_CASE("declared counts of 4 billion take no memory") {
@@ -65,7 +62,8 @@ TEST_CASE("declared counts of 4 billion take no memory") {
         "property float x\nproperty float y\nproperty float z\n";
     check_refused("a.ply", binary + body, "declares 4000000000");
     check_refused("a.off", "OFF\n4000000000 4000000000 0\n0 0 0\n", "declares 4000000000");
-    check_refused("a.off", "OFF\n3 1 0\n" + corners + "4000000000 0 1 2\n", "a face of 4000000000");
+    check_refused("a.off", "OFF\n3 1 0\n" + ply_corners + "4000000000 0 1 2\n",
+                  "a face of 4000000000");
     std::string stl(80, ' ');
     stl += "\xFF\xFF\xFF\xFF";
     check_refused("a.stl", stl + std::string(500, '\0'), "declares 4294967295");
@@ -78,11 +76,11 @@ TEST_CASE("declared counts of 4 billion take no memory") {
 }
 
 TEST_CASE("damaged OFF files are refused with the line") {
-    check_refused("a.off", "OFF\n3 1 0\n" + corners + "3 0 1\n", "line 6");
-    check_refused("a.off", "OFF\n3 1 0\n" + corners + "3 0 1 2 255 0\n", "line 6");
-    check_refused("a.off", "OFF\n3 1 0\n" + corners + "3 0 1 x\n", "'x'");
+    check_refused("a.off", "OFF\n3 1 0\n" + ply_corners + "3 0 1\n", "line 6");
+    check_refused("a.off", "OFF\n3 1 0\n" + ply_corners + "3 0 1 2 255 0\n", "line 6");
+    check_refused("a.off", "OFF\n3 1 0\n" + ply_corners + "3 0 1 x\n", "'x'");
     check_refused("a.off", "OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n", "line");
-    check_refused("a.off", "OFF\n3 2 0\n" + corners + "3 0 1 2\n", "it has 1");
+    check_refused("a.off", "OFF\n3 2 0\n" + ply_corners + "3 0 1 2\n", "it has 1");
     check_refused("a.off", "OFF BINARY\n" + std::string(50, '\0'), "BINARY");
     check_refused("a.off", "4OFF\n3 1 0\n", "4OFF");
     check_refused("a.off", "hello\n", "'hello'");
@@ -96,29 +94,35 @@ TEST_CASE("text STL files that lack their end are refused") {
     check_refused("a.stl", "solid a\n" + facet + facet.substr(0, 60), "truncated");
     check_refused("a.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0\nendloop\n",
                   "line 5");
-    CHECK(loaded("a.stl", "solid endsolid\n" + facet + "endsolid facet\n").triangles.size() == 1);
+    CHECK(load_text("a.stl", "solid endsolid\n" + facet + "endsolid facet\n").triangles.size() ==
+          1);
 }
 
 TEST_CASE("indices that do not exist are counted, never moved") {
-    CHECK(loaded("a.off", "OFF\n3 3 0\n" + corners + "3 0 1 2\n3 0 1 999\n3 0 1 -1\n")
+    CHECK(load_text("a.off", "OFF\n3 3 0\n" + ply_corners + "3 0 1 2\n3 0 1 999\n3 0 1 -1\n")
               .drops.out_of_range_triangles == 2);
-    CHECK(loaded("a.ply", head +
-                              "element face 3\nproperty list uchar float vertex_indices\n"
-                              "end_header\n" +
-                              corners + "3 0 1 2\n3 0 1 1.5\n3 0 1 5e9\n")
+    CHECK(load_text("a.ply", ply_head +
+                                 "element face 3\nproperty list uchar float vertex_indices\n"
+                                 "end_header\n" +
+                                 ply_corners + "3 0 1 2\n3 0 1 1.5\n3 0 1 5e9\n")
               .drops.out_of_range_triangles == 2);
 }
 
 TEST_CASE("bytes after the end are counted") {
-    CHECK(loaded("a.ply", head + list + corners + "3 0 1 2\n3 2 1 0\n").drops.bytes_after_end == 8);
-    CHECK(loaded("a.ply", head + list + corners + "3 0 1 2\n \n").drops.bytes_after_end == 0);
-    CHECK(loaded("a.off", "OFF\n3 1 0\n" + corners + "3 0 1 2\nend\n").drops.bytes_after_end == 4);
+    CHECK(load_text("a.ply", ply_head + list + ply_corners + "3 0 1 2\n3 2 1 0\n")
+              .drops.bytes_after_end == 8);
+    CHECK(
+        load_text("a.ply", ply_head + list + ply_corners + "3 0 1 2\n \n").drops.bytes_after_end ==
+        0);
+    CHECK(
+        load_text("a.off", "OFF\n3 1 0\n" + ply_corners + "3 0 1 2\nend\n").drops.bytes_after_end ==
+        4);
 }
 
 TEST_CASE("edges are counted as lines") {
-    const Mesh mesh =
-        loaded("a.ply", head + "element edge 2\nproperty int vertex1\nproperty int vertex2\n" +
-                            list + corners + "0 1\n1 2\n3 0 1 2\n");
+    const Mesh mesh = load_text(
+        "a.ply", ply_head + "element edge 2\nproperty int vertex1\nproperty int vertex2\n" + list +
+                     ply_corners + "0 1\n1 2\n3 0 1 2\n");
     CHECK(mesh.triangles.size() == 1);
     CHECK(mesh.drops.points_and_lines == 2);
 }

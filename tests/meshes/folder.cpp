@@ -13,7 +13,7 @@ struct Place {
     Place() { std::filesystem::create_directory(inner); }
 };
 
-const std::string triangle = "usemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+const std::string red_triangle = "usemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
 TEST_CASE("material files outside of the mesh's folder are not read, and noted") {
     const Place place;
@@ -24,7 +24,7 @@ TEST_CASE("material files outside of the mesh's folder are not read, and noted")
           std::string("link.mtl"), std::string("..\\secret.mtl"), std::string("/dev/zero")}) {
         INFO(name);
         const support::Mesh mesh = support::load_mesh(
-            place.outer.write("meshes/m.obj", "mtllib " + name + "\n" + triangle));
+            place.outer.write("meshes/m.obj", "mtllib " + name + "\n" + red_triangle));
         REQUIRE(mesh.triangles.size() == 1);
         CHECK(has_note(mesh, "is not in the mesh's folder"));
         CHECK(!has_note(mesh, "top"));
@@ -39,7 +39,7 @@ TEST_CASE("material files in the folder are read by any path that stays there") 
     for (const char* name : {"sub/a.mtl", "sub\\a.mtl", "./sub/../sub/a.mtl"}) {
         INFO(name);
         const support::Mesh mesh = support::load_mesh(
-            place.outer.write("meshes/m.obj", std::string("mtllib ") + name + "\n" + triangle));
+            place.outer.write("meshes/m.obj", std::string("mtllib ") + name + "\n" + red_triangle));
         CHECK(mesh.materials.at(0).opacity == 0.25F);
     }
 }

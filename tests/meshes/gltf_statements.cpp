@@ -7,7 +7,7 @@ namespace cellist::test {
 namespace {
 
 // A square in the plane z = 0 as accessor 0, and its two triangles as accessor 1.
-GltfScene square() {
+GltfScene square_scene() {
     GltfScene scene;
     scene.add_values(std::vector<float>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, 5126, "VEC3", 3);
     scene.add_values(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3}, 5123, "SCALAR", 1);
@@ -27,7 +27,7 @@ float greatest(const support::Mesh& mesh, int axis) {
 
 // Loads the square after `change`, and checks that the message names the place.
 void check_refused(const std::string& place, const std::function<void(GltfScene&)>& change) {
-    GltfScene scene = square();
+    GltfScene scene = square_scene();
     change(scene);
     const std::string message = refusal("m.gltf", scene.gltf());
     INFO(message);
@@ -35,7 +35,7 @@ void check_refused(const std::string& place, const std::function<void(GltfScene&
 }
 
 TEST_CASE("a triangle with an index that does not exist is dropped and counted") {
-    GltfScene scene = square();
+    GltfScene scene = square_scene();
     primitive_of(scene)["indices"] = scene.add_values(
         std::vector<std::uint16_t>{0, 1, 2, 0, 2, 999, 0, 2, 65535}, 5123, "SCALAR", 1);
     const support::Mesh mesh = load(scene);
@@ -44,14 +44,14 @@ TEST_CASE("a triangle with an index that does not exist is dropped and counted")
 }
 
 TEST_CASE("points and lines are counted") {
-    GltfScene scene = square();
+    GltfScene scene = square_scene();
     for (const int mode : {0, 1, 2, 3})
         scene.add_primitive({{"mode", mode}, {"attributes", {{"POSITION", 0}}}});
     CHECK(load(scene).drops.points_and_lines == 4 + 2 + 4 + 3);
 }
 
 TEST_CASE("joints place a skinned mesh, and its node does not") {
-    GltfScene scene = square();
+    GltfScene scene = square_scene();
     std::vector<std::uint8_t> joints;
     std::vector<float> weights;
     for (int v = 0; v < 4; ++v) {
@@ -86,7 +86,7 @@ TEST_CASE("joints place a skinned mesh, and its node does not") {
 }
 
 TEST_CASE("a mesh in several nodes is drawn in each") {
-    GltfScene scene = square();
+    GltfScene scene = square_scene();
     scene.root["nodes"].push_back({{"mesh", 0}, {"translation", {0, 0, 5}}});
     scene.root["scenes"][0]["nodes"].push_back(1);
     const support::Mesh mesh = load(scene);
@@ -95,7 +95,7 @@ TEST_CASE("a mesh in several nodes is drawn in each") {
 }
 
 TEST_CASE("the default scene is drawn, or the first, or all nodes") {
-    GltfScene scene = square();
+    GltfScene scene = square_scene();
     scene.root["nodes"].push_back({{"mesh", 0}, {"translation", {0, 0, 5}}});
     scene.root["scenes"].push_back({{"nodes", {1, 0}}});
     CHECK(load(scene).triangles.size() == 2);
@@ -111,7 +111,7 @@ TEST_CASE("the default scene is drawn, or the first, or all nodes") {
 TEST_CASE("extensions that a file requires are refused by name, others are noted") {
     for (const char* name : {"KHR_draco_mesh_compression", "EXT_meshopt_compression",
                              "EXT_mesh_gpu_instancing", "KHR_materials_transmission", "X_new"}) {
-        GltfScene scene = square();
+        GltfScene scene = square_scene();
         scene.root["extensionsUsed"] = {name};
         if (std::string(name).find("compression") == std::string::npos)
             CHECK(has_note(load(scene), name));
@@ -121,7 +121,7 @@ TEST_CASE("extensions that a file requires are refused by name, others are noted
         CHECK(contains(message, name));
     }
     for (const char* name : {"KHR_texture_transform", "KHR_materials_unlit", "EXT_texture_webp"}) {
-        GltfScene scene = square();
+        GltfScene scene = square_scene();
         scene.root["extensionsUsed"] = {name};
         scene.root["extensionsRequired"] = {name};
         CHECK(load(scene).notes.empty());
@@ -185,7 +185,7 @@ TEST_CASE("values that do not fit one another are refused with their place") {
 }
 
 TEST_CASE("lengths in a GLB file that do not fit are refused, bytes after its end are counted") {
-    const std::string glb = square().glb();
+    const std::string glb = square_scene().glb();
     for (const std::size_t at :
          {std::size_t{4}, std::size_t{8}, std::size_t{12}, std::size_t{16}}) {
         std::string changed = glb;

@@ -9,12 +9,12 @@ namespace {
 
 using support::MeshMaterial;
 
-constexpr const char* corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+constexpr const char* obj_corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 support::Mesh load_with_mtl(const std::string& obj, const std::string& mtl) {
     const Folder folder;
     (void)folder.write("m.mtl", mtl);
-    return support::load_mesh(folder.write("m.obj", "mtllib m.mtl\n" + (corners + obj)));
+    return support::load_mesh(folder.write("m.obj", "mtllib m.mtl\n" + (obj_corners + obj)));
 }
 
 MeshMaterial material_of_only(const support::Mesh& mesh) {
@@ -62,8 +62,8 @@ TEST_CASE("faces take the material of the last usemtl, whatever the groups") {
 
 TEST_CASE("materials and material files that do not exist are noted") {
     const Folder folder;
-    const support::Mesh mesh = support::load_mesh(
-        folder.write("m.obj", std::string("mtllib no.mtl\nusemtl a\n") + corners + "f 1 2 3\n"));
+    const support::Mesh mesh = support::load_mesh(folder.write(
+        "m.obj", std::string("mtllib no.mtl\nusemtl a\n") + obj_corners + "f 1 2 3\n"));
     CHECK(has_note(mesh, "no.mtl"));
     CHECK(has_note(mesh, "'a'"));
     CHECK(material_of_only(mesh).opacity == std::nullopt);
@@ -75,7 +75,7 @@ TEST_CASE("mtllib names one file with blanks, or several files") {
     (void)folder.write("other.mtl", "newmtl b\nd 0.5\n");
     const support::Mesh mesh = support::load_mesh(
         folder.write("m.obj", std::string("mtllib my own.mtl\nmtllib other.mtl none.mtl\n") +
-                                  corners + "usemtl a\nf 1 2 3\nusemtl b\nf 3 2 1\n"));
+                                  obj_corners + "usemtl a\nf 1 2 3\nusemtl b\nf 3 2 1\n"));
     REQUIRE(mesh.triangle_materials.size() == 2);
     CHECK(mesh.materials.at(mesh.triangle_materials[0]).opacity == 0.25F);
     CHECK(mesh.materials.at(mesh.triangle_materials[1]).opacity == 0.5F);
@@ -85,7 +85,7 @@ TEST_CASE("mtllib names one file with blanks, or several files") {
 TEST_CASE("a damaged MTL file is refused with its line, one that may be cut off is noted") {
     const Folder folder;
     const auto path =
-        folder.write("m.obj", std::string("mtllib m.mtl\nusemtl a\n") + corners + "f 1 2 3\n");
+        folder.write("m.obj", std::string("mtllib m.mtl\nusemtl a\n") + obj_corners + "f 1 2 3\n");
     for (const char* bad :
          {"Kd 1 0", "Kd 1 0 x", "Kd spectral a.rfl", "d", "d nan", "d -1", "Tr a"}) {
         (void)folder.write("m.mtl", std::string("newmtl a\n") + bad + "\n");
@@ -105,7 +105,7 @@ TEST_CASE("textures of colour and opacity are counted for materials that faces u
 }
 
 // A triangle with a material of this JSON.
-GltfScene triangle(const json& material) {
+GltfScene triangle_of(const json& material) {
     GltfScene scene;
     scene.add_values(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}, 5126, "VEC3", 3);
     scene.root["materials"] = {material};
@@ -136,14 +136,14 @@ TEST_CASE("a glTF material gives base colour, and the opacity of its alpha mode"
                0.5F}}) {
         INFO(c.material.dump());
         const MeshMaterial material =
-            material_of_only(load_text("m.glb", triangle(c.material).glb()));
+            material_of_only(load_text("m.glb", triangle_of(c.material).glb()));
         CHECK(material.base_colour == c.colour);
         CHECK(material.opacity == c.opacity);
     }
 }
 
 TEST_CASE("a primitive without a material says nothing of its opacity") {
-    GltfScene scene = triangle(json::object());
+    GltfScene scene = triangle_of(json::object());
     scene.root["meshes"][0]["primitives"][0].erase("material");
     CHECK(material_of_only(load_text("m.glb", scene.glb())).opacity == std::nullopt);
     scene.root.erase("materials");
@@ -151,7 +151,7 @@ TEST_CASE("a primitive without a material says nothing of its opacity") {
 }
 
 TEST_CASE("triangles below their material's alpha cutoff are not drawn, and noted") {
-    GltfScene scene = triangle(
+    GltfScene scene = triangle_of(
         {{"alphaMode", "MASK"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.25}}}}});
     scene.add_primitive({{"attributes", {{"POSITION", 0}}}});
     const support::Mesh mesh = load_text("m.glb", scene.glb());
@@ -161,7 +161,7 @@ TEST_CASE("triangles below their material's alpha cutoff are not drawn, and note
 
 TEST_CASE("glTF vertex colours are linear factors, and their alpha counts where it blends") {
     for (const char* mode : {"OPAQUE", "BLEND"}) {
-        GltfScene scene = triangle({{"alphaMode", mode}});
+        GltfScene scene = triangle_of({{"alphaMode", mode}});
         std::vector<std::uint8_t> colours;
         for (int i = 0; i < 3; ++i) colours.insert(colours.end(), {255, 51, 0, 102});
         const std::size_t accessor = scene.add_values(colours, 5121, "VEC4", 4);
@@ -174,7 +174,8 @@ TEST_CASE("glTF vertex colours are linear factors, and their alpha counts where 
 }
 
 TEST_CASE("base colour textures of glTF materials that are drawn are counted") {
-    GltfScene scene = triangle({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+    GltfScene scene =
+        triangle_of({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
     scene.root["materials"].push_back(scene.root["materials"][0]);
     CHECK(load_text("m.glb", scene.glb()).ignored_textures == 1);
 }

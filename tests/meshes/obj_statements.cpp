@@ -6,7 +6,7 @@
 namespace cellist::test {
 namespace {
 
-const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+const std::string square_vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 support::Mesh load_obj(const std::string& text) { return load_text("m.obj", text); }
 
@@ -14,7 +14,7 @@ TEST_CASE("faces with an index that does not exist are dropped and counted") {
     for (const char* face : {"f 0 1 2", "f 1 2 9", "f -5 -2 -1", "f 1 2 3 4294967297",
                              "f 1 2 99999999999999999999", "f 1 2 -99999999999999999999"}) {
         INFO(face);
-        const support::Mesh mesh = load_obj(square + face + "\nf 1 2 3\n");
+        const support::Mesh mesh = load_obj(square_vertices + face + "\nf 1 2 3\n");
         CHECK(mesh.triangles.size() == 1);
         CHECK(mesh.drops.out_of_range_triangles == 1);
     }
@@ -22,13 +22,14 @@ TEST_CASE("faces with an index that does not exist are dropped and counted") {
 
 TEST_CASE("negative indices count back from the vertices so far") {
     const support::Mesh mesh =
-        load_obj(square + "f -4 -3 -2\nv 5 5 5\nv 6 5 5\nv 6 6 5\nf -3 -2 -1\n");
+        load_obj(square_vertices + "f -4 -3 -2\nv 5 5 5\nv 6 5 5\nv 6 6 5\nf -3 -2 -1\n");
     REQUIRE(mesh.triangles.size() == 2);
     for (const std::uint32_t v : mesh.triangles[1]) CHECK(mesh.positions[v].z == 5);
 }
 
 TEST_CASE("points, lines and faces of less than three corners are counted") {
-    const support::Mesh mesh = load_obj(square + "p 1 2 3\nl 1 2 3\nf 1 2\nf 1\nf 1 2 3\n");
+    const support::Mesh mesh =
+        load_obj(square_vertices + "p 1 2 3\nl 1 2 3\nf 1 2\nf 1\nf 1 2 3\n");
     CHECK(mesh.triangles.size() == 1);
     CHECK(mesh.drops.points_and_lines == 6);
 }
@@ -65,14 +66,14 @@ TEST_CASE("what makes no sense is refused with its line") {
 }
 
 TEST_CASE("curves and surfaces are not drawn, and noted") {
-    const support::Mesh mesh =
-        load_obj(square + "cstype bezier\ndeg 3\ncurv 0 1 1 2 3 4\nparm u 0 1\nend\nf 1 2 3\n");
+    const support::Mesh mesh = load_obj(
+        square_vertices + "cstype bezier\ndeg 3\ncurv 0 1 1 2 3 4\nparm u 0 1\nend\nf 1 2 3\n");
     CHECK(mesh.triangles.size() == 1);
     CHECK(has_note(mesh, "free-form"));
 }
 
 TEST_CASE("a normal that does not exist is made, and noted") {
-    const support::Mesh mesh = load_obj(square + "vn 0 0 1\nf 1//1 2//2 3//0\n");
+    const support::Mesh mesh = load_obj(square_vertices + "vn 0 0 1\nf 1//1 2//2 3//0\n");
     REQUIRE(mesh.triangles.size() == 1);
     CHECK(has_note(mesh, "normal that does not exist, so that theirs is made: 2"));
 }
@@ -110,7 +111,8 @@ TEST_CASE("a face of 100,000 corners in a line is refused or drawn, in good time
         face += " " + std::to_string(i + 1);
     }
     try {
-        CHECK(load_obj(text + face + "\n" + square + "f -4 -3 -2\n").triangles.size() >= 1);
+        CHECK(load_obj(text + face + "\n" + square_vertices + "f -4 -3 -2\n").triangles.size() >=
+              1);
     } catch (const support::InputError&) {}
 }
 

@@ -97,6 +97,28 @@ private:
     Kernel kernel_;
 };
 
+/// Inserts on the device, for builds that are called several times or wait, and their kernel.
+struct UploadedInserts {
+    UploadedInserts(const Lists<Item>& lists, const Inserts<Item>& inserts,
+                    const Device& on = device())
+        : count(static_cast<cl_uint>(inserts.size())),
+          cells(on, inserts.cells),
+          records(on, inserts.records),
+          kernel(on, insert_source("Item"), "insert_all", lists) {}
+    /// Enqueues the inserts.
+    void insert(const Lists<Item>& lists) {
+        kernel.run(Range::padded(count, 64), lists, cells, records, count);
+    }
+    Pending<BuildReport> build_async(Lists<Item>& lists) {
+        return lists.build_async(kernel, Range::padded(count, 64), cells, records, count);
+    }
+
+    cl_uint count;
+    Buffer<cl_uint> cells;
+    Buffer<Item> records;
+    Kernel kernel;
+};
+
 /// What the lists must hold: records by cell, in no order.
 template <class T>
 using Oracle = std::multimap<std::uint64_t, T>;

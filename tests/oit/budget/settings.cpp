@@ -19,13 +19,13 @@
 namespace cellist::test {
 namespace {
 
-oit::Scene knot(oit::Blend blend = oit::Blend::over) {
+oit::Scene blended_knot(oit::Blend blend = oit::Blend::over) {
     oit::Scene scene = oit::scene_of(torus_knot(2, 3, 150, 10), 0.4F);
     scene.materials.front().blend = static_cast<cl_uint>(blend);
     return scene;
 }
 
-oit::Frame frame_of(const oit::Scene& scene, const oit::Quality& quality = {}) {
+oit::Frame settings_frame(const oit::Scene& scene, const oit::Quality& quality = {}) {
     return {.scene = scene,
             .views = {support::frame_unit_sphere({30, 10}, 80, 60)},
             .quality = quality};
@@ -42,8 +42,8 @@ bool has(const std::vector<std::string>& texts, const std::string& text) {
 }
 
 TEST_CASE("settings are all different, and cover methods, formats, layers, early ends and sizes") {
-    const oit::Scene scene = knot();
-    const std::vector<std::string> texts = texts_of(settings_for(frame_of(scene), 20));
+    const oit::Scene scene = blended_knot();
+    const std::vector<std::string> texts = texts_of(settings_for(settings_frame(scene), 20));
     CHECK(std::set<std::string>(texts.begin(), texts.end()).size() == texts.size());
     for (const oit::MethodInfo& method : oit::methods()) {
         INFO(method.name);
@@ -64,8 +64,8 @@ TEST_CASE("settings are all different, and cover methods, formats, layers, early
 }
 
 TEST_CASE("settings that a method refuses are left out") {
-    const oit::Scene scene = knot(oit::Blend::absorb);
-    const oit::Frame frame = frame_of(scene);
+    const oit::Scene scene = blended_knot(oit::Blend::absorb);
+    const oit::Frame frame = settings_frame(scene);
     for (const std::string& text : texts_of(settings_for(frame, 100))) {
         CHECK_FALSE(contains(text, "weighted"));
         CHECK_FALSE(contains(text, "dual_peeling"));
@@ -73,15 +73,15 @@ TEST_CASE("settings that a method refuses are left out") {
 }
 
 TEST_CASE("settings keep a frame's samples, and nothing that it gives up") {
-    const oit::Scene scene = knot();
+    const oit::Scene scene = blended_knot();
     const auto settings = settings_for(
-        frame_of(scene, {.samples = 4, .resolve = oit::Resolve::per_sample, .layers = 2}), 3);
+        settings_frame(scene, {.samples = 4, .resolve = oit::Resolve::per_sample, .layers = 2}), 3);
     CHECK(has(texts_of(settings), "--method linked --samples 4 --resolve sample"));
     for (const oit::Setting& setting : settings) CHECK(setting.quality.samples == 4);
 }
 
 TEST_CASE("the exact setting is the first, and nothing of a frame's but its samples and depths") {
-    const oit::Scene scene = knot();
+    const oit::Scene scene = blended_knot();
     const oit::Quality quality{.samples = 4,
                                .resolve = oit::Resolve::per_sample,
                                .depth_range = true,
@@ -93,12 +93,12 @@ TEST_CASE("the exact setting is the first, and nothing of a frame's but its samp
     const oit::Setting exact = oit::exact_setting(quality);
     CHECK(oit::text(exact) ==
           "--method linked --depth-scale reversed --samples 4 --resolve sample --depth-range");
-    CHECK(oit::text(settings_for(frame_of(scene, quality), 20).front()) == oit::text(exact));
+    CHECK(oit::text(settings_for(settings_frame(scene, quality), 20).front()) == oit::text(exact));
 }
 
 TEST_CASE("the text of a setting is read as that setting") {
-    const oit::Scene scene = knot();
-    const oit::Frame frame = frame_of(
+    const oit::Scene scene = blended_knot();
+    const oit::Frame frame = settings_frame(
         scene, {.samples = 2, .depth_range = true, .depth_scale = oit::DepthScale::reversed});
     for (const oit::Setting& setting : settings_for(frame, 100)) {
         std::istringstream words("cellist-oit gearworks " + text(setting));
@@ -129,8 +129,8 @@ TEST_CASE("options that are not given are as they were") {
 }
 
 TEST_CASE("larger sizes of an approximation are not less accurate") {
-    const oit::Scene scene = knot();
-    const oit::Frame frame = frame_of(scene);
+    const oit::Scene scene = blended_knot();
+    const oit::Frame frame = settings_frame(scene);
     const oit::Reference reference = oit::draw_reference(frame);
     for (const oit::MethodInfo& method : oit::methods()) {
         if (method.sizes.empty()) continue;
@@ -150,8 +150,8 @@ TEST_CASE("larger sizes of an approximation are not less accurate") {
 }
 
 TEST_CASE("a measurement has times, memory, errors and the image") {
-    const oit::Scene scene = knot();
-    const oit::Frame frame = frame_of(scene);
+    const oit::Scene scene = blended_knot();
+    const oit::Frame frame = settings_frame(scene);
     const oit::Reference reference = oit::draw_reference(frame);
     const oit::MethodInfo& linked = oit::method_named("linked");
     const oit::Measurement all = measure(device(), frame, {&linked, {}}, reference, 3);
@@ -170,8 +170,8 @@ TEST_CASE("a measurement has times, memory, errors and the image") {
 }
 
 TEST_CASE("settings are measured interleaved, each with as many frames") {
-    const oit::Scene scene = knot();
-    const oit::Frame frame = frame_of(scene);
+    const oit::Scene scene = blended_knot();
+    const oit::Frame frame = settings_frame(scene);
     const oit::Reference reference = oit::draw_reference(frame);
     const std::vector<oit::Setting> settings{{&oit::method_named("linked"), {}},
                                              {&oit::method_named("dual_peeling"), {.layers = 3}},
@@ -203,8 +203,8 @@ TEST_CASE("settings are measured interleaved, each with as many frames") {
 }
 
 TEST_CASE("what cannot be drawn has a reason and no metrics") {
-    const oit::Scene scene = knot();
-    const oit::Frame frame = frame_of(scene);
+    const oit::Scene scene = blended_knot();
+    const oit::Frame frame = settings_frame(scene);
     const oit::Setting refused{&oit::method_named("dual_peeling"), {.layers = 3}};
     const oit::Measurement measurement =
         measure(device(), frame, refused, oit::draw_reference(frame), 2);

@@ -12,7 +12,7 @@
 namespace cellist::test {
 namespace {
 
-oit::Setting named(const char* method, const oit::Quality& quality = {}) {
+oit::Setting setting_of(const char* method, const oit::Quality& quality = {}) {
     return {&oit::method_named(method), quality};
 }
 
@@ -48,9 +48,9 @@ TEST_CASE("a setting is measurably slower by its median and by quartiles that do
 }
 
 TEST_CASE("a setting that is clearly faster is chosen, however special it is") {
-    CHECK(chosen({{named("linked"), {20, 21, 22}},
-                  {named("stochastic", {.size = 4}), {10, 11, 12}},
-                  {named("counted"), {15, 16, 17}}}) == "--method stochastic:4");
+    CHECK(chosen({{setting_of("linked"), {20, 21, 22}},
+                  {setting_of("stochastic", {.size = 4}), {10, 11, 12}},
+                  {setting_of("counted"), {15, 16, 17}}}) == "--method stochastic:4");
 }
 
 TEST_CASE("on a busy machine the plainest exact setting is chosen, whatever is fastest by chance") {
@@ -58,38 +58,41 @@ TEST_CASE("on a busy machine the plainest exact setting is chosen, whatever is f
         quick{18, 33, 23, 60, 26};
     for (const auto& [a, b, c] : {std::tuple(early, late, quick), std::tuple(late, quick, early),
                                   std::tuple(quick, early, late)}) {
-        CHECK(chosen({{named("linked", {.layers = 8}), a},
-                      {named("weighted"), b},
-                      {named("linked"), c},
-                      {named("counted"), a},
-                      {named("linked", {.format = oit::NodeFormat::rgba8}), b}}) ==
+        CHECK(chosen({{setting_of("linked", {.layers = 8}), a},
+                      {setting_of("weighted"), b},
+                      {setting_of("linked"), c},
+                      {setting_of("counted"), a},
+                      {setting_of("linked", {.format = oit::NodeFormat::rgba8}), b}}) ==
               "--method linked");
-        CHECK(chosen({{named("weighted"), a}, {named("counted"), b}, {named("peeling"), c}}) ==
-              "--method counted");
+        CHECK(chosen({{setting_of("weighted"), a},
+                      {setting_of("counted"), b},
+                      {setting_of("peeling"), c}}) == "--method counted");
     }
 }
 
 TEST_CASE("the plainest setting does not depend on the order in which settings come") {
     const std::vector<double> times{10, 11, 12};
-    CHECK(chosen({{named("counted"), times}, {named("linked"), times}}) == "--method linked");
-    CHECK(chosen({{named("linked"), times}, {named("counted"), times}}) == "--method linked");
+    CHECK(chosen({{setting_of("counted"), times}, {setting_of("linked"), times}}) ==
+          "--method linked");
+    CHECK(chosen({{setting_of("linked"), times}, {setting_of("counted"), times}}) ==
+          "--method linked");
 }
 
 TEST_CASE("exact goes before approximate, all layers before fewer, floats before packed nodes") {
     const std::vector<oit::Setting> order{
-        named("linked"),
-        named("counted"),
-        named("linked", {.format = oit::NodeFormat::rgba16f}),
-        named("linked", {.format = oit::NodeFormat::rgb565_d16}),
-        named("linked", {.epsilon = 0.003F}),
-        named("linked", {.epsilon = 0.1F}),
-        named("linked", {.layers = 64}),
-        named("linked", {.layers = 8}),
-        named("kbuffer", {.size = 16}),
-        named("kbuffer", {.size = 8}),
-        named("weighted"),
-        named("stochastic", {.size = 64}),
-        named("stochastic", {.size = 2}),
+        setting_of("linked"),
+        setting_of("counted"),
+        setting_of("linked", {.format = oit::NodeFormat::rgba16f}),
+        setting_of("linked", {.format = oit::NodeFormat::rgb565_d16}),
+        setting_of("linked", {.epsilon = 0.003F}),
+        setting_of("linked", {.epsilon = 0.1F}),
+        setting_of("linked", {.layers = 64}),
+        setting_of("linked", {.layers = 8}),
+        setting_of("kbuffer", {.size = 16}),
+        setting_of("kbuffer", {.size = 8}),
+        setting_of("weighted"),
+        setting_of("stochastic", {.size = 64}),
+        setting_of("stochastic", {.size = 2}),
     };
     for (std::size_t i = 0; i < order.size(); ++i)
         for (std::size_t j = 0; j < order.size(); ++j) {

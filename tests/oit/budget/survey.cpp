@@ -22,7 +22,7 @@ using oit::PictureError;
 const std::vector<std::uint32_t> layer_counts{1, 2, 4, 8, 16};
 const std::vector<float> epsilons{0.1F, 0.01F};
 
-oit::Frame frame_of(const oit::Scene& scene, const oit::Quality& quality = {}) {
+oit::Frame survey_frame(const oit::Scene& scene, const oit::Quality& quality = {}) {
     return {.scene = scene,
             .views = {support::frame_unit_sphere({30, 10}, 100, 75)},
             .quality = quality};
@@ -101,7 +101,7 @@ TEST_CASE("bounds hold for random scenes that cover and add") {
     for (const std::uint32_t seed : {1u}) {
         INFO("seed " << seed);
         const oit::Scene scene = random_scene(seed, {Blend::over, Blend::additive, Blend::over});
-        require_bounds(frame_of(scene));
+        require_bounds(survey_frame(scene));
     }
 }
 
@@ -110,14 +110,14 @@ TEST_CASE("bounds hold for random scenes that filter and absorb") {
         INFO("seed " << seed);
         const oit::Scene scene =
             random_scene(seed, {Blend::absorb, Blend::multiplicative, Blend::over});
-        require_bounds(frame_of(scene));
+        require_bounds(survey_frame(scene));
     }
 }
 
 TEST_CASE("bounds hold for samples and ranges of depth") {
     const oit::Scene scene = random_scene(7, {Blend::over, Blend::over});
-    require_bounds(frame_of(scene, {.samples = 4}));
-    require_bounds(frame_of(scene, {.samples = 2, .depth_range = true}));
+    require_bounds(survey_frame(scene, {.samples = 4}));
+    require_bounds(survey_frame(scene, {.samples = 2, .depth_range = true}));
 }
 
 // Thin triangles across the picture: few fragments, and many blocks of pixels that they touch.
@@ -137,7 +137,7 @@ oit::Scene splinters(int count) {
 
 TEST_CASE("a survey misses nothing where its first room is too small") {
     const oit::Scene scene = splinters(10000);
-    const oit::Frame frame = frame_of(scene);
+    const oit::Frame frame = survey_frame(scene);
     oit::Survey survey(device(), frame, layer_counts, epsilons);
     const auto found = static_cast<double>(survey.measure(frame).fragments);
     const auto count = static_cast<double>(oit::draw_reference(frame).fragments.size());
@@ -150,7 +150,7 @@ TEST_CASE("bounds hold at the limits of numbers") {
         if (!info.name.starts_with("extreme-")) continue;
         INFO(info.name);
         const oit::Scene scene = info.make(0.35F);
-        const oit::Frame frame = frame_of(scene);
+        const oit::Frame frame = survey_frame(scene);
         oit::Survey survey(device(), frame, layer_counts, epsilons);
         const oit::SurveyResult bounds = survey.measure(frame);
         const oit::Reference reference = oit::draw_reference(frame);

@@ -12,7 +12,7 @@
 namespace cellist::test {
 namespace {
 
-struct Case {
+struct MeshView {
     support::Orbit orbit;
     int width, height;
     float alpha = 0.35F;
@@ -20,7 +20,7 @@ struct Case {
     bool floor = false;
 };
 
-void require_accurate(const support::Mesh& mesh, const Case& c) {
+void require_accurate(const support::Mesh& mesh, const MeshView& c) {
     INFO("view " << c.orbit.azimuth_degrees << "," << c.orbit.elevation_degrees << ", " << c.width
                  << "x" << c.height << ", alpha " << c.alpha << ", layers "
                  << (c.layers ? std::to_string(*c.layers) : "all") << ", floor " << c.floor);

@@ -19,7 +19,7 @@ namespace {
 using oit::Blend;
 
 // Knots, one inside of the other, each with a way of blending.
-oit::Scene knots(const std::vector<Blend>& blends) {
+oit::Scene turned_knots(const std::vector<Blend>& blends) {
     oit::Scene scene = oit::scene_of(torus_knot(2, 3, 240, 16), 0.4F);
     scene.instances.clear();
     scene.materials.clear();
@@ -57,7 +57,7 @@ TEST_CASE("surfaces cover, add, tint and absorb as in double precision") {
           {Blend::absorb},
           {Blend::over, Blend::additive, Blend::multiplicative, Blend::absorb}}) {
         INFO(blends.size() << " kinds, the first is " << static_cast<int>(blends.front()));
-        oit::Scene scene = knots(blends);
+        oit::Scene scene = turned_knots(blends);
         for (const bool floor : {false, true}) {
             if (floor) oit::add_floor(scene);
             require_accurate(
@@ -67,7 +67,7 @@ TEST_CASE("surfaces cover, add, tint and absorb as in double precision") {
 }
 
 TEST_CASE("a medium without a glossy surface absorbs alone") {
-    oit::Scene scene = knots({Blend::absorb});
+    oit::Scene scene = turned_knots({Blend::absorb});
     scene.materials.front().gloss = 0;
     require_accurate({.scene = scene, .views = {support::frame_unit_sphere({20, 15}, 200, 150)}});
 }
@@ -118,7 +118,7 @@ oit::Frame user_frame(const oit::Scene& scene, const std::string& body) {
 }
 
 TEST_CASE("a function of the user's blends") {
-    const oit::Scene scene = knots({Blend::user, Blend::over, Blend::user});
+    const oit::Scene scene = turned_knots({Blend::user, Blend::over, Blend::user});
     const oit::Frame frame = user_frame(scene, R"(
     const float part = fragment->alpha * exp(-2.0f * distance);
     *colour += *transmittance * part * fragment->colour;
@@ -132,7 +132,7 @@ TEST_CASE("a function of the user's blends") {
 }
 
 TEST_CASE("a function that does not compile is refused with the file and the line") {
-    const oit::Scene scene = knots({Blend::user});
+    const oit::Scene scene = turned_knots({Blend::user});
     const oit::Frame frame = user_frame(scene, "    *colour = 1.0f;\n    no_such_thing();");
     const auto error = error_of<support::InputError>([&] { oit::Renderer(device(), frame); });
     INFO(error.what());
@@ -142,7 +142,7 @@ TEST_CASE("a function that does not compile is refused with the file and the lin
 }
 
 TEST_CASE("pixels for which a function gives no number are counted") {
-    const oit::Scene scene = knots({Blend::user});
+    const oit::Scene scene = turned_knots({Blend::user});
     const oit::Frame frame = user_frame(scene, "    *colour = NAN;");
     oit::Renderer renderer(device(), frame);
     renderer.draw();

@@ -17,7 +17,7 @@ namespace {
 
 using oit::NodeFormat;
 
-oit::Frame frame_of(const oit::Scene& scene, const oit::Quality& quality) {
+oit::Frame format_frame(const oit::Scene& scene, const oit::Quality& quality) {
     return {.scene = scene,
             .views = {support::frame_unit_sphere({30, 10}, 160, 120)},
             .quality = quality};
@@ -26,7 +26,7 @@ oit::Frame frame_of(const oit::Scene& scene, const oit::Quality& quality) {
 // Requires that pixels in which depths are resolved are within the bound that follows from the
 // format's, and returns how many these are.
 std::size_t require_within_bound(const oit::Scene& scene, const oit::Quality& quality) {
-    const oit::Frame frame = frame_of(scene, quality);
+    const oit::Frame frame = format_frame(scene, quality);
     oit::Renderer renderer(device(), frame);
     renderer.draw();
     const oit::Reference reference = oit::draw_reference(frame);
@@ -55,11 +55,11 @@ std::size_t require_within_bound(const oit::Scene& scene, const oit::Quality& qu
     return certain;
 }
 
-oit::Scene knot() { return oit::scene_of(torus_knot(2, 3, 300, 16), 0.35F); }
+oit::Scene plain_knot() { return oit::scene_of(torus_knot(2, 3, 300, 16), 0.35F); }
 
 // Opacities that differ from vertex to vertex.
 oit::Scene smoky_knot() {
-    oit::Scene scene = knot();
+    oit::Scene scene = plain_knot();
     oit::Model& model = scene.models.front();
     for (std::size_t i = 0; i < model.mesh.positions.size(); ++i)
         model.opacities.push_back(static_cast<float>(i % 100) / 99);
@@ -79,9 +79,9 @@ TEST_CASE("a node has no more words than the frame needs") {
         INFO("format " << static_cast<int>(c.format));
         const auto words = [&](const oit::Scene& scene, int samples) {
             const oit::Quality quality{.samples = samples, .format = c.format};
-            return node_layout(quality, features_of(frame_of(scene, quality))).words;
+            return node_layout(quality, features_of(format_frame(scene, quality))).words;
         };
-        CHECK(words(knot(), 1) == c.uniform);
+        CHECK(words(plain_knot(), 1) == c.uniform);
         CHECK(words(smoky_knot(), 1) == c.smoky);
         CHECK(words(smoky_knot(), 8) == c.smoky_samples);
     }
@@ -104,8 +104,9 @@ TEST_CASE("every format is as accurate as its bound") {
                 INFO(format.name << ", "
                                  << (scale == oit::DepthScale::linear ? "linear" : "reversed")
                                  << (smoky ? ", with opacities" : ""));
-                const std::size_t certain = require_within_bound(
-                    smoky ? smoky_knot() : knot(), {.format = format.format, .depth_scale = scale});
+                const std::size_t certain =
+                    require_within_bound(smoky ? smoky_knot() : plain_knot(),
+                                         {.format = format.format, .depth_scale = scale});
                 CHECK(certain > 160 * 120 * 9 / 10);
             }
 }
@@ -124,12 +125,12 @@ TEST_CASE("formats hold coverage and kinds of blending, too") {
 }
 
 TEST_CASE("depths in nodes are as fine as they are said to be") {
-    const oit::Scene scene = knot();
+    const oit::Scene scene = plain_knot();
     for (const oit::NodeFormatName& format : oit::node_formats)
         for (const oit::DepthScale scale : {oit::DepthScale::linear, oit::DepthScale::reversed}) {
             INFO(format.name);
             const oit::Frame frame =
-                frame_of(scene, {.format = format.format, .depth_scale = scale});
+                format_frame(scene, {.format = format.format, .depth_scale = scale});
             oit::Renderer renderer(device(), frame);
             renderer.draw();
             const oit::Reference reference = oit::draw_reference(frame);

@@ -9,10 +9,10 @@
 namespace cellist::test {
 namespace {
 
-std::string document() { return read_file(CELLIST_NUMERICS_DOCUMENT); }
+std::string numerics_document() { return read_file(CELLIST_NUMERICS_DOCUMENT); }
 
 TEST_CASE("colours are within their bounds at the limits of numbers, in every format") {
-    const std::string text = document();
+    const std::string text = numerics_document();
     for (const Extreme& extreme : extremes)
         for (const auto& [format, name] : oit::node_formats) {
             const ColourMetrics metrics = measure(device(), extreme, format);
@@ -30,7 +30,7 @@ TEST_CASE("colours are within their bounds at the limits of numbers, in every fo
 }
 
 TEST_CASE("depths from 10^-4 to 10^6 are within their bounds") {
-    const std::string text = document();
+    const std::string text = numerics_document();
     for (const DepthCase& depth_case : depth_cases) {
         const DepthMetrics metrics = measure(device(), depth_case);
         INFO(depth_case.name << ": " << metrics.used << " of the bound");

@@ -47,31 +47,32 @@ oit::Scene knot_between_sheets(oit::Blend blend) {
     return scene;
 }
 
-oit::Frame frame_of(const oit::Scene& scene, int reduce, const support::Orbit& orbit = {0, 0}) {
+oit::Frame reduced_frame(const oit::Scene& scene, int reduce,
+                         const support::Orbit& orbit = {0, 0}) {
     // Sides that are no multiples of 4.
     return {.scene = scene,
             .views = {support::frame_unit_sphere(orbit, 207, 150)},
             .quality = {.reduce = reduce}};
 }
 
-std::vector<cl_float4> draw(const oit::Frame& frame, const oit::MethodInfo& method) {
+std::vector<cl_float4> draw_twice(const oit::Frame& frame, const oit::MethodInfo& method) {
     oit::Renderer renderer(device(), frame, method);
     renderer.draw();
     renderer.draw();
     return renderer.image();
 }
 
-std::vector<cl_float4> draw(const oit::Frame& frame) {
-    return draw(frame, oit::method_named("linked"));
+std::vector<cl_float4> draw_twice(const oit::Frame& frame) {
+    return draw_twice(frame, oit::method_named("linked"));
 }
 
 TEST_CASE("edges of opaque surfaces stay sharp behind and in front of smooth ones") {
     for (const auto& [blend, reduce] :
          {std::pair{oit::Blend::over, 2}, {oit::Blend::multiplicative, 4}}) {
         const oit::Scene scene = knot_between_sheets(blend);
-        const oit::Frame frame = frame_of(scene, reduce);
+        const oit::Frame frame = reduced_frame(scene, reduce);
         const oit::Comparison comparison =
-            oit::compare(oit::draw_reference(frame), draw(frame), {});
+            oit::compare(oit::draw_reference(frame), draw_twice(frame), {});
         INFO("reduced by " << reduce << ": " << 255 * comparison.max_abs_error << " / 255");
         CHECK(comparison.max_abs_error < 1.5 / 255);
         CHECK(comparison.pixels_nan == 0);
@@ -97,7 +98,7 @@ TEST_CASE("surfaces are as they were but near their edges") {
         const oit::Frame frame{.scene = scene,
                                .views = {support::frame_unit_sphere({25, 8}, 400, 300)},
                                .quality = {.reduce = reduce}};
-        const std::vector<cl_float4> image = draw(frame);
+        const std::vector<cl_float4> image = draw_twice(frame);
         const oit::Reference reference = oit::draw_reference(frame);
         double squares = 0;
         std::size_t count = 0;
@@ -122,10 +123,10 @@ TEST_CASE("surfaces are as they were but near their edges") {
 
 TEST_CASE("every method can draw at reduced resolution") {
     const oit::Scene scene = knot_between_sheets(oit::Blend::over);
-    const oit::Frame frame = frame_of(scene, 2);
+    const oit::Frame frame = reduced_frame(scene, 2);
     const oit::Reference reference = oit::draw_reference(frame);
     for (const oit::MethodInfo& method : oit::methods()) {
-        const std::vector<cl_float4> image = draw(frame, method);
+        const std::vector<cl_float4> image = draw_twice(frame, method);
         const oit::Comparison comparison = oit::compare(reference, image, {});
         INFO(method.name << ": " << comparison.psnr_db << " dB");
         CHECK(comparison.pixels_nan == 0);
@@ -135,30 +136,31 @@ TEST_CASE("every method can draw at reduced resolution") {
 
 TEST_CASE("each eye is enlarged by its own depths") {
     const oit::Scene scene = knot_between_sheets(oit::Blend::over);
-    oit::Frame frame = frame_of(scene, 4);
+    oit::Frame frame = reduced_frame(scene, 4);
     frame.views = support::frame_unit_sphere({0, 0}, 207, 150, 0.2);
-    const oit::Comparison comparison = oit::compare(oit::draw_reference(frame), draw(frame), {});
+    const oit::Comparison comparison =
+        oit::compare(oit::draw_reference(frame), draw_twice(frame), {});
     INFO(255 * comparison.max_abs_error << " / 255");
     CHECK(comparison.max_abs_error < 1.5 / 255);
 }
 
 TEST_CASE("reduced surfaces need fewer nodes, and none at all where there are none") {
     oit::Scene scene = knot_between_sheets(oit::Blend::over);
-    const oit::Frame frame = frame_of(scene, 4), full = frame_of(scene, 1);
+    const oit::Frame frame = reduced_frame(scene, 4), full = reduced_frame(scene, 1);
     oit::Renderer reduced(device(), frame), whole(device(), full);
     reduced.draw();
     whole.draw();
     CHECK(12 * reduced.method().lengths()->total < whole.method().lengths()->total);
 
     scene.instances.resize(1);  // the knot alone
-    CHECK(oit::compare(oit::draw_reference(frame), draw(frame), {}).pixels_over == 0);
+    CHECK(oit::compare(oit::draw_reference(frame), draw_twice(frame), {}).pixels_over == 0);
     scene.instances.clear();
-    CHECK(oit::compare(oit::draw_reference(frame), draw(frame), {}).pixels_over == 0);
+    CHECK(oit::compare(oit::draw_reference(frame), draw_twice(frame), {}).pixels_over == 0);
 }
 
 TEST_CASE("reduced surfaces with several samples are refused") {
     const oit::Scene scene = knot_between_sheets(oit::Blend::over);
-    oit::Frame frame = frame_of(scene, 2);
+    oit::Frame frame = reduced_frame(scene, 2);
     frame.quality.samples = 4;
     const std::string message =
         error_of<support::InputError>([&] { oit::Renderer(device(), frame); }).what();

@@ -11,8 +11,9 @@
 namespace cellist::test {
 namespace {
 
-std::vector<cl_float4> draw(const support::Mesh& mesh, std::optional<std::uint32_t> layers,
-                            int runs, int& different) {
+std::vector<cl_float4> draw_repeatedly(const support::Mesh& mesh,
+                                       std::optional<std::uint32_t> layers, int runs,
+                                       int& different) {
     oit::Scene scene = oit::scene_of(mesh, 0.35F);
     oit::add_floor(scene);
     const oit::Frame frame{.scene = scene,
@@ -35,7 +36,7 @@ TEST_CASE("twenty runs give the same bits") {
     for (const std::optional<std::uint32_t> layers :
          {std::optional<std::uint32_t>(), std::optional<std::uint32_t>(3)}) {
         int different = 0;
-        draw(knot, layers, 20, different);
+        draw_repeatedly(knot, layers, 20, different);
         CHECK(different == 0);
     }
 }
@@ -49,9 +50,9 @@ TEST_CASE("the order of the triangles does not matter, coincident ones included"
         knot.triangles.push_back({t[0], t[2], t[1]});
     }
     int different = 0;
-    const std::vector<cl_float4> forwards = draw(knot, {}, 1, different);
+    const std::vector<cl_float4> forwards = draw_repeatedly(knot, {}, 1, different);
     std::reverse(knot.triangles.begin(), knot.triangles.end());
-    const std::vector<cl_float4> backwards = draw(knot, {}, 1, different);
+    const std::vector<cl_float4> backwards = draw_repeatedly(knot, {}, 1, different);
     CHECK(std::memcmp(forwards.data(), backwards.data(), forwards.size() * sizeof(cl_float4)) == 0);
 }
 

@@ -50,7 +50,7 @@ std::vector<Sheet> stack(std::size_t count, float alpha, double step, float brig
     return sheets;
 }
 
-oit::Frame frame_of(const oit::Scene& scene, std::optional<std::uint32_t> size = {}) {
+oit::Frame sheets_frame(const oit::Scene& scene, std::optional<std::uint32_t> size = {}) {
     return {.scene = scene,
             .views = {support::frame_unit_sphere({0, 0}, 24, 18)},
             .quality = {.size = size}};
@@ -101,12 +101,12 @@ Difference difference_from(const Definition& definition, const oit::Frame& frame
     return difference;
 }
 
-struct Case {
+struct SheetsCase {
     const char* name;
     std::vector<Sheet> sheets;
 };
 
-std::vector<Case> cases() {
+std::vector<SheetsCase> cases() {
     std::vector<Sheet> bright = stack(100, 0.3F, 0.012, 1e4F);
     for (std::size_t i = 0; i < bright.size(); i += 2) bright[i].brightness = 1;
     return {{"one layer", stack(1, 0.35F, 0)},
@@ -127,9 +127,10 @@ std::vector<Case> cases() {
 
 void require_defined(const char* method, std::optional<std::uint32_t> size,
                      const Definition& definition, double tolerance) {
-    for (const Case& of : cases()) {
+    for (const SheetsCase& of : cases()) {
         const oit::Scene scene = scene_of(of.sheets);
-        const Difference difference = difference_from(definition, frame_of(scene, size), method);
+        const Difference difference =
+            difference_from(definition, sheets_frame(scene, size), method);
         INFO(method << ", " << of.name);
         CHECK(difference.largest < (of.sheets.size() == 1 ? 2e-5 : tolerance));
     }
@@ -164,12 +165,12 @@ TEST_CASE("a k-buffer blends the nearest layers") {
 
 // The mean over the pixels: each has trials of its own.
 TEST_CASE("stochastic transparency is that of Enderton et al. in the mean") {
-    for (const Case& of : cases()) {
+    for (const SheetsCase& of : cases()) {
         const oit::Scene scene = scene_of(of.sheets);
         const Difference difference =
             difference_from([](defined::Layers layers,
                                const defined::DepthBounds&) { return defined::stochastic(layers); },
-                            frame_of(scene, 64), "stochastic");
+                            sheets_frame(scene, 64), "stochastic");
         INFO(of.name);
         CHECK(difference.mean < (of.sheets.size() == 1 ? 2e-5 : 1e-2));
         CHECK(difference.largest < 0.2);
@@ -177,7 +178,7 @@ TEST_CASE("stochastic transparency is that of Enderton et al. in the mean") {
 }
 
 TEST_CASE("layers of one colour have that colour by every approximation, whatever their opacity") {
-    for (const Case& of : cases()) {
+    for (const SheetsCase& of : cases()) {
         if (of.sheets.size() < 8) continue;
         const oit::Scene scene = scene_of(of.sheets, true);
         for (const oit::MethodInfo& method : oit::methods()) {
@@ -187,7 +188,7 @@ TEST_CASE("layers of one colour have that colour by every approximation, whateve
                 [](defined::Layers layers, const defined::DepthBounds&) {
                     return defined::nearest(layers, layers.size());
                 },
-                frame_of(scene), method.name.data());
+                sheets_frame(scene), method.name.data());
             INFO(method.name << ", " << of.name);
             CHECK(difference.largest < 1e-4);
         }

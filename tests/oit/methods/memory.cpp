@@ -21,7 +21,7 @@ oit::Scene knot_on_floor() {
     return scene;
 }
 
-oit::Frame frame_of(const oit::Scene& scene, const oit::Quality& quality = {}, int eyes = 1) {
+oit::Frame small_frame(const oit::Scene& scene, const oit::Quality& quality = {}, int eyes = 1) {
     const support::Orbit orbit{30, 10};
     if (eyes == 2)
         return {.scene = scene,
@@ -80,22 +80,22 @@ std::uint32_t require_same(const oit::Frame& frame, const oit::MethodInfo& metho
 TEST_CASE("pictures are the same whatever the budget of the lists is") {
     const oit::Scene scene = knot_on_floor();
     for (const char* name : slicing)
-        CHECK(require_same(frame_of(scene), oit::method_named(name)) > 5);
+        CHECK(require_same(small_frame(scene), oit::method_named(name)) > 5);
 }
 
 TEST_CASE("slices go with eyes, samples, nearest layers and packed fragments") {
     const oit::Scene scene = knot_on_floor();
     const oit::MethodInfo& linked = oit::method_named("linked");
-    CHECK(require_same(frame_of(scene, {.layers = 3}, 2), linked) > 5);
-    CHECK(require_same(frame_of(scene, {.samples = 4,
-                                        .resolve = oit::Resolve::per_sample,
-                                        .format = oit::NodeFormat::rgba8_d24c8}),
+    CHECK(require_same(small_frame(scene, {.layers = 3}, 2), linked) > 5);
+    CHECK(require_same(small_frame(scene, {.samples = 4,
+                                           .resolve = oit::Resolve::per_sample,
+                                           .format = oit::NodeFormat::rgba8_d24c8}),
                        linked) > 5);
 }
 
 TEST_CASE("the least budget that is named is enough") {
     const oit::Scene scene = knot_on_floor();
-    const oit::Frame frame = frame_of(scene, {}, 2);
+    const oit::Frame frame = small_frame(scene, {}, 2);
     const oit::MethodInfo& linked = oit::method_named("linked");
     const oit::Frame tight = bounded(frame, least_of(frame, linked));
     oit::Renderer whole(device(), frame, linked), renderer(device(), tight, linked);
@@ -109,7 +109,7 @@ TEST_CASE("the least budget that is named is enough") {
 
 TEST_CASE("methods without slices draw within a budget, or say how much they take") {
     const oit::Scene scene = knot_on_floor();
-    const oit::Frame frame = frame_of(scene);
+    const oit::Frame frame = small_frame(scene);
     for (const char* name : {"kbuffer", "weighted", "peeling"}) {
         INFO(name);
         const oit::MethodInfo& method = oit::method_named(name);
@@ -127,7 +127,7 @@ TEST_CASE("methods without slices draw within a budget, or say how much they tak
 
 TEST_CASE("nothing takes the memory of its pixels") {
     const oit::Scene empty;
-    const oit::Frame frame = frame_of(empty);
+    const oit::Frame frame = small_frame(empty);
     CHECK(require_same(frame, oit::method_named("linked")) == 1);
 }
 

@@ -23,7 +23,7 @@ namespace {
 using oit::Blend;
 
 // Two knots in one another on a floor, and a copy of one of them in the same place.
-oit::Scene knots(Blend inner) {
+oit::Scene nested_knots(Blend inner) {
     oit::Scene scene = oit::scene_of(torus_knot(2, 3, 200, 12), 0.3F);
     oit::Material material = oit::glass(0.6F);
     material.blend = static_cast<cl_uint>(inner);
@@ -35,7 +35,7 @@ oit::Scene knots(Blend inner) {
     return scene;
 }
 
-oit::Frame frame_of(const oit::Scene& scene, const oit::Quality& quality = {}) {
+oit::Frame knots_frame(const oit::Scene& scene, const oit::Quality& quality = {}) {
     return {.scene = scene,
             .views = {support::frame_unit_sphere({30, 10}, 150, 110)},
             .quality = quality};
@@ -67,21 +67,22 @@ TEST_CASE("exact methods blend all fragments") {
     constexpr std::array blends{Blend::over, Blend::multiplicative, Blend::absorb};
     std::size_t turn = 0;
     for (const oit::MethodInfo& method : oit::methods())
-        if (method.exact) require_exact(method, frame_of(knots(blends[turn++ % blends.size()])));
+        if (method.exact)
+            require_exact(method, knots_frame(nested_knots(blends[turn++ % blends.size()])));
 }
 
 TEST_CASE("exact methods blend samples, nearest layers and packed fragments") {
-    const oit::Scene scene = knots(Blend::additive);
+    const oit::Scene scene = nested_knots(Blend::additive);
     for (const oit::MethodInfo& method : oit::methods()) {
         if (!method.exact) continue;
-        require_exact(method, frame_of(scene, {.samples = 4}));
-        require_exact(method, frame_of(scene, {.layers = 3}));
+        require_exact(method, knots_frame(scene, {.samples = 4}));
+        require_exact(method, knots_frame(scene, {.layers = 3}));
     }
 }
 
 TEST_CASE("every method gives the same bits every time, and no colour that is no number") {
-    const oit::Scene scene = knots(Blend::over);
-    const oit::Frame frame = frame_of(scene);
+    const oit::Scene scene = nested_knots(Blend::over);
+    const oit::Frame frame = knots_frame(scene);
     for (const oit::MethodInfo& method : oit::methods()) {
         if (is_refused(method, frame)) continue;
         INFO(method.name);
@@ -103,9 +104,9 @@ TEST_CASE("approximations are exact where there is one layer, and near where the
         if (method.exact) continue;
         for (const int samples : {1, 4}) {
             INFO(method.name << ", " << samples << " samples");
-            const oit::Scene many = knots(Blend::over);
+            const oit::Scene many = nested_knots(Blend::over);
             const auto psnr = [&](const oit::Scene& scene, bool single) {
-                const oit::Frame frame = frame_of(scene, {.samples = samples});
+                const oit::Frame frame = knots_frame(scene, {.samples = samples});
                 oit::Renderer renderer(device(), frame, method);
                 renderer.draw();
                 oit::Reference reference = oit::draw_reference(frame);
@@ -149,10 +150,10 @@ TEST_CASE("a hundred layers of one bright colour are as bright as each of them")
 }
 
 TEST_CASE("blending that ends early is within its bound") {
-    const oit::Scene scene = knots(Blend::over);
-    const oit::Reference reference = oit::draw_reference(frame_of(scene));
+    const oit::Scene scene = nested_knots(Blend::over);
+    const oit::Reference reference = oit::draw_reference(knots_frame(scene));
     for (const float epsilon : {0.5F, 0.1F, 0.01F}) {
-        const oit::Frame frame = frame_of(scene, {.epsilon = epsilon});
+        const oit::Frame frame = knots_frame(scene, {.epsilon = epsilon});
         oit::Renderer renderer(device(), frame);
         renderer.draw();
         const std::vector<cl_float4> image = renderer.image();

@@ -10,7 +10,7 @@ namespace {
 // Counts the edges that a ray to the right from p crosses, each edge without its lower end and each
 // crossing strictly to the right: p on a left or top edge is inside, p on a right or bottom edge is
 // not. Exact for points within 2^20.
-bool contains(const std::array<Point, 3>& triangle, Point p) {
+bool is_inside(const std::array<Point, 3>& triangle, Point p) {
     bool inside = false;
     for (std::size_t i = 0; i < 3; ++i) {
         const Point a = triangle[i], b = triangle[(i + 1) % 3];
@@ -30,7 +30,7 @@ void require_coverage(const std::vector<std::array<Point, 3>>& triangles, int wi
         add_triangle(mesh, triangle[0], triangle[1], triangle[2]);
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x)
-                if (contains(triangle, {(2 * x + 1 - width) * 128, (2 * y + 1 - height) * 128}))
+                if (is_inside(triangle, {(2 * x + 1 - width) * 128, (2 * y + 1 - height) * 128}))
                     ++expected[static_cast<std::size_t>(y * width + x)];
     }
     const Coverage coverage = coverage_of(mesh, pixel_view(width, height));

@@ -85,13 +85,13 @@ TEST_CASE("triangles that share edges cover every sample once") {
     }
 }
 
-oit::Frame frame_of(const oit::Scene& scene, const oit::Quality& quality) {
+oit::Frame sampled_frame(const oit::Scene& scene, const oit::Quality& quality) {
     return {.scene = scene,
             .views = {support::frame_unit_sphere({30, 10}, 160, 120)},
             .quality = quality};
 }
 
-std::vector<cl_float4> require_accurate(const oit::Frame& frame) {
+std::vector<cl_float4> require_accurate_samples(const oit::Frame& frame) {
     oit::Renderer renderer(device(), frame);
     renderer.draw();
     const oit::Comparison comparison =
@@ -109,10 +109,10 @@ TEST_CASE("samples are blended as in double precision, by pixel and by sample") 
     oit::add_floor(scene);
     for (const int samples : {2, 4, 8}) {
         INFO(samples << " samples");
-        oit::Frame frame = frame_of(scene, {.samples = samples});
-        const std::vector<cl_float4> by_pixel = require_accurate(frame);
+        oit::Frame frame = sampled_frame(scene, {.samples = samples});
+        const std::vector<cl_float4> by_pixel = require_accurate_samples(frame);
         frame.quality.resolve = oit::Resolve::per_sample;
-        const std::vector<cl_float4> by_sample = require_accurate(frame);
+        const std::vector<cl_float4> by_sample = require_accurate_samples(frame);
         float largest = 0;
         for (std::size_t p = 0; p < by_pixel.size(); ++p)
             for (int c = 0; c < 3; ++c)
@@ -124,11 +124,12 @@ TEST_CASE("samples are blended as in double precision, by pixel and by sample") 
 TEST_CASE("depths in each sample order surfaces as in double precision") {
     const oit::Scene scene = oit::scene_of(torus_knot(2, 3, 300, 16), 0.35F);
     for (const oit::Resolve resolve : {oit::Resolve::per_pixel, oit::Resolve::per_sample})
-        require_accurate(frame_of(scene, {.samples = 4, .resolve = resolve, .depth_range = true}));
+        require_accurate_samples(
+            sampled_frame(scene, {.samples = 4, .resolve = resolve, .depth_range = true}));
 }
 
 // A square of a colour of its own, turned and moved.
-void add_square(oit::Scene& scene, const glm::dmat4& place) {
+void add_square_model(oit::Scene& scene, const glm::dmat4& place) {
     support::Mesh square;
     for (const float y : {-0.8F, 0.8F})
         for (const float x : {-0.8F, 0.8F}) {
@@ -184,12 +185,12 @@ TEST_CASE("samples, and depths in each of them, bring the image nearer to one of
     std::vector<oit::Scene> scenes(4);
     // Two that stick in each other steeply, four that cross in one line, sheets that lie close
     // behind one another at a grazing angle and do not cross, and three in one corner.
-    for (const double angle : {1.35, -1.35}) add_square(scenes[0], turned(angle));
-    for (const double angle : {0.7, 0.58, 0.46, 0.35}) add_square(scenes[1], turned(angle));
+    for (const double angle : {1.35, -1.35}) add_square_model(scenes[0], turned(angle));
+    for (const double angle : {0.7, 0.58, 0.46, 0.35}) add_square_model(scenes[1], turned(angle));
     for (const double behind : {0.0, 0.02, 0.04, 0.06})
-        add_square(scenes[2],
-                   glm::translate(glm::dmat4(1), glm::dvec3(0, 0, behind)) * turned(1.4));
-    for (const double up : {0.0, 0.9, -0.9}) add_square(scenes[3], turned(1.1, up));
+        add_square_model(scenes[2],
+                         glm::translate(glm::dmat4(1), glm::dvec3(0, 0, behind)) * turned(1.4));
+    for (const double up : {0.0, 0.9, -0.9}) add_square_model(scenes[3], turned(1.1, up));
     constexpr int finer = 12;
     for (const oit::Scene& scene : scenes) {
         const oit::Reference fine = oit::draw_reference(
@@ -207,7 +208,7 @@ TEST_CASE("samples, and depths in each of them, bring the image nearer to one of
         CHECK(depths.largest <= eight.largest);
         if (&scene != &scenes[2]) CHECK(depths.mean < 0.95 * eight.mean);
         // The device draws what the reference says.
-        require_accurate(frame_of(scene, ordered));
+        require_accurate_samples(sampled_frame(scene, ordered));
     }
 }
 
@@ -215,11 +216,11 @@ TEST_CASE("two eyes are two views of one build") {
     oit::Scene scene = oit::scene_of(torus_knot(2, 3, 240, 12), 0.35F);
     oit::add_floor(scene);
     const std::vector<raster::View> views = support::frame_unit_sphere({30, 10}, 90, 70, 0.25);
-    const std::vector<cl_float4> both = require_accurate({.scene = scene, .views = views});
+    const std::vector<cl_float4> both = require_accurate_samples({.scene = scene, .views = views});
     REQUIRE(both.size() == 2 * 90 * 70);
     for (std::size_t eye = 0; eye < 2; ++eye) {
         const std::vector<cl_float4> alone =
-            require_accurate({.scene = scene, .views = {views[eye]}});
+            require_accurate_samples({.scene = scene, .views = {views[eye]}});
         float largest = 0;
         for (std::size_t p = 0; p < alone.size(); ++p)
             for (int c = 0; c < 3; ++c)

@@ -7,8 +7,6 @@
 namespace cellist::test {
 namespace {
 
-Program oit_program() { return Program(CELLIST_OIT_PROGRAM); }
-
 TEST_CASE("bad arguments are refused") {
     const Program program = oit_program();
     (void)program.folder().write("zero.cl", std::string("a\0b", 3));

@@ -12,7 +12,7 @@
 namespace cellist::test {
 namespace {
 
-std::string document() { return read_file(CELLIST_TRANSPARENCY_DOCUMENT); }
+std::string transparency_document() { return read_file(CELLIST_TRANSPARENCY_DOCUMENT); }
 
 // The rows of the first table after a heading, without the line of names.
 std::vector<std::string> rows_after(const std::string& text, const std::string& heading) {
@@ -39,7 +39,7 @@ std::string cells_of(const oit::MethodInfo& method) {
 }
 
 TEST_CASE("the document has the table of methods") {
-    const std::vector<std::string> rows = rows_after(document(), "## Methods");
+    const std::vector<std::string> rows = rows_after(transparency_document(), "## Methods");
     REQUIRE(rows.size() == oit::methods().size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const std::string expected = cells_of(oit::methods()[i]);
@@ -49,7 +49,7 @@ TEST_CASE("the document has the table of methods") {
 }
 
 TEST_CASE("the document has all scenes") {
-    const std::string text = document();
+    const std::string text = transparency_document();
     for (const oit::SceneInfo& scene : oit::scenes()) {
         INFO(scene.name);
         CHECK(contains(text, scene.name.starts_with("extreme-")
@@ -59,7 +59,7 @@ TEST_CASE("the document has all scenes") {
 }
 
 TEST_CASE("the document has all options of the programs") {
-    const std::string text = document();
+    const std::string text = transparency_document();
     const std::regex option("--[a-z][a-z-]*");
     for (const char* path : {CELLIST_OIT_PROGRAM, CELLIST_TRADEOFF_PROGRAM}) {
         const std::string help = Program(path).run("--help").out;

@@ -38,7 +38,7 @@ std::size_t files_in(const fs::path& folder) {
         std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
 
-std::string error_of(const fs::path& path, std::string_view bytes) {
+std::string write_error(const fs::path& path, std::string_view bytes) {
     try {
         support::write_file(path, bytes);
     } catch (const support::InputError& error) {
@@ -54,7 +54,8 @@ TEST_CASE("a file that does not fit leaves the old one, and nothing else") {
     {
         const FileSizeLimit limit(8192);
         for (const fs::path& path : {old, folder / "new"})
-            CHECK(error_of(path, much) == "cannot write '" + path.string() + "': File too large");
+            CHECK(write_error(path, much) ==
+                  "cannot write '" + path.string() + "': File too large");
     }
     CHECK(read_file(old) == "as it was");
     CHECK(files_in(folder / ".") == 1);
@@ -76,12 +77,12 @@ TEST_CASE("permissions stay, and links are followed") {
     support::write_file(folder / "to new", "made");
     CHECK(read_file(folder / "missing") == "made");
     fs::create_symlink("circle", folder / "circle");
-    CHECK(contains(error_of(folder / "circle", "x"), "cannot write"));
+    CHECK(contains(write_error(folder / "circle", "x"), "cannot write"));
 }
 
 TEST_CASE("devices and FIFOs are written as they are") {
-    CHECK(error_of("/dev/full", "x") == "cannot write '/dev/full': No space left on device");
-    CHECK(error_of("/dev/null", "x").empty());
+    CHECK(write_error("/dev/full", "x") == "cannot write '/dev/full': No space left on device");
+    CHECK(write_error("/dev/null", "x").empty());
     CHECK(fs::is_character_file("/dev/null"));
     const Folder folder;
     const fs::path fifo = folder / "fifo";
@@ -121,7 +122,7 @@ TEST_CASE("a name in another encoding is written") {
     const fs::path path = folder / "caf\xE9.json";
     support::write_file(path, "x");
     CHECK(read_file(path) == "x");
-    CHECK(contains(error_of(folder / "caf\xE9" / "x", "x"), "caf\\xE9/x'"));
+    CHECK(contains(write_error(folder / "caf\xE9" / "x", "x"), "caf\\xE9/x'"));
 }
 
 }  // namespace

@@ -11,10 +11,10 @@
 namespace cellist::test {
 namespace {
 
-constexpr int width = 3, height = 2;
+constexpr int image_width = 3, image_height = 2;
 
 std::vector<cl_float4> pixels() {
-    std::vector<cl_float4> image(width * height);
+    std::vector<cl_float4> image(image_width * image_height);
     for (std::size_t i = 0; i < image.size(); ++i)
         image[i] = {{0.25F * static_cast<float>(i), 1e6F, -2.0F - static_cast<float>(i), 9}};
     return image;
@@ -22,7 +22,7 @@ std::vector<cl_float4> pixels() {
 
 std::string written(const std::string& name) {
     const Folder folder;
-    support::write_image(folder / name, pixels(), width, height);
+    support::write_image(folder / name, pixels(), image_width, image_height);
     return read_file(folder / name);
 }
 
@@ -80,19 +80,19 @@ TEST_CASE("EXR files have the attributes and the lines that the format asks for"
     }
     CHECK(names == "BGR");
     Bytes window(attributes["dataWindow:box2i"]);
-    for (const std::int32_t corner : {0, 0, width - 1, height - 1})
+    for (const std::int32_t corner : {0, 0, image_width - 1, image_height - 1})
         CHECK(window.take<std::int32_t>() == corner);
     CHECK(attributes["compression:compression"] == std::string(1, '\0'));
     std::size_t table = file.at();
-    for (int y = 0; y < height; ++y, table += 8) {
+    for (int y = 0; y < image_height; ++y, table += 8) {
         file.go_to(table);
         file.go_to(file.take<std::uint64_t>());
         CHECK(file.take<std::int32_t>() == y);
-        CHECK(file.take<std::int32_t>() == 3 * 4 * width);
+        CHECK(file.take<std::int32_t>() == 3 * 4 * image_width);
         for (const int channel : {2, 1, 0})
-            for (int x = 0; x < width; ++x)
+            for (int x = 0; x < image_width; ++x)
                 CHECK(file.take<float>() ==
-                      pixels()[static_cast<std::size_t>(y * width + x)].s[channel]);
+                      pixels()[static_cast<std::size_t>(y * image_width + x)].s[channel]);
     }
     CHECK(file.at() == file.size());
 }
@@ -102,10 +102,11 @@ TEST_CASE("PFM files have floats, row by row from the bottom") {
     const std::string head = "PF\n3 2\n-1.0\n";
     REQUIRE(file.all().starts_with(head));
     file.go_to(head.size());
-    for (int y = height; y-- > 0;)
-        for (int x = 0; x < width; ++x)
+    for (int y = image_height; y-- > 0;)
+        for (int x = 0; x < image_width; ++x)
             for (int c = 0; c < 3; ++c)
-                CHECK(file.take<float>() == pixels()[static_cast<std::size_t>(y * width + x)].s[c]);
+                CHECK(file.take<float>() ==
+                      pixels()[static_cast<std::size_t>(y * image_width + x)].s[c]);
     CHECK(file.at() == file.size());
 }
 

@@ -13,14 +13,14 @@
 namespace cellist::test {
 namespace {
 
-using json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
 // What an option is called in the report.
 struct Row {
     std::string option;
     std::string arguments;
     std::string key;  ///< a JSON pointer
-    json value;
+    ordered_json value;
 };
 
 // Of both programs.
@@ -87,7 +87,7 @@ auto parsed(const std::string& arguments, const auto& parse) {
 }
 
 // The report of a run that has drawn nothing.
-json oit_json(const std::string& arguments) {
+ordered_json oit_json(const std::string& arguments) {
     oit::Report report;
     report.options = parsed(arguments, oit::parse_options);
     report.device = "the device";
@@ -95,10 +95,10 @@ json oit_json(const std::string& arguments) {
     if (report.options.reference) report.comparison.emplace();
     if (report.options.budget)
         report.choice = oit::Choice{.setting = oit::exact_setting(report.options.quality)};
-    return json::parse(oit::dump(to_json(report), 2));
+    return ordered_json::parse(oit::dump(to_json(report), 2));
 }
 
-json tradeoff_json(const std::string& arguments) {
+ordered_json tradeoff_json(const std::string& arguments) {
     oit::Sweep sweep;
     sweep.options = parsed(arguments, oit::parse_tradeoff_options);
     sweep.device = "the device";
@@ -106,7 +106,7 @@ json tradeoff_json(const std::string& arguments) {
     sweep.measurements.push_back({.setting = oit::exact_setting({})});
     sweep.measurements.back().add({1});
     sweep.left_out.push_back({"method", "reason"});
-    return json::parse(oit::dump(to_json(sweep), 2));
+    return ordered_json::parse(oit::dump(to_json(sweep), 2));
 }
 
 std::set<std::string> options_in(const std::string& help) {
@@ -127,13 +127,13 @@ void require_all_options(const std::string& help, std::vector<Row> rows, const a
         known.insert(row.option);
         // --up is for files; options are read before their contents.
         const bool of_file = row.option == "--up";
-        const json report =
+        const ordered_json report =
             report_of((of_file ? CELLIST_FOG_PATH " " : "gearworks ") + row.arguments);
         CHECK(report["scene"] == (of_file ? "fog.cl" : "gearworks"));
-        const json::json_pointer key(row.key);
+        const ordered_json::json_pointer key(row.key);
         REQUIRE(report.contains(key));
         CHECK(report[key] == row.value);
-        CHECK(report_of("gearworks").contains(json::json_pointer(row.key)) ==
+        CHECK(report_of("gearworks").contains(ordered_json::json_pointer(row.key)) ==
               (!row.key.starts_with("/budget/") && row.option != "--reference"));
     }
     // An option that is new has a row here, and so a key.
@@ -150,7 +150,8 @@ TEST_CASE("each option of cellist-tradeoff has its key") {
 }
 
 TEST_CASE("both programs have the same head") {
-    const json a = oit_json("gearworks --view 1,2"), b = tradeoff_json("gearworks --view 1,2");
+    const ordered_json a = oit_json("gearworks --view 1,2"),
+                       b = tradeoff_json("gearworks --view 1,2");
     for (const char* key : {"schema", "version", "arguments", "scene", "width", "view", "alpha",
                             "device", "driver", "triangles", "fragments"}) {
         INFO(key);
@@ -159,8 +160,8 @@ TEST_CASE("both programs have the same head") {
     }
     CHECK(a["alpha"] == 0.35);
     CHECK(a["alpha"] == b["alpha"]);
-    CHECK(a["arguments"] == json{"gearworks", "--view", "1,2"});
-    const json& setting = b["settings"][0];
+    CHECK(a["arguments"] == ordered_json{"gearworks", "--view", "1,2"});
+    const ordered_json& setting = b["settings"][0];
     for (const char* key :
          {"options", "method", "size", "layers", "epsilon", "format", "ms", "fastest_ms", "frames",
           "bytes", "psnr_db", "ssim", "max_abs_error", "pixels_over_1_255", "pixels_nan"}) {
@@ -170,14 +171,14 @@ TEST_CASE("both programs have the same head") {
     }
 }
 
-void add_keys(const json& value, std::set<std::string>& keys) {
+void add_keys(const ordered_json& value, std::set<std::string>& keys) {
     if (value.is_object())
         for (const auto& [key, member] : value.items()) {
             keys.insert(key);
             add_keys(member, keys);
         }
     else if (value.is_array())
-        for (const json& member : value) add_keys(member, keys);
+        for (const ordered_json& member : value) add_keys(member, keys);
 }
 
 TEST_CASE("the document has all keys") {

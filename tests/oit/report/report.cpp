@@ -8,8 +8,6 @@
 namespace cellist::test {
 namespace {
 
-Program oit_program() { return Program(CELLIST_OIT_PROGRAM); }
-
 TEST_CASE("the picture, the screen and the JSON agree, and pictures are equal in every run") {
     const Program program = oit_program();
     const std::string arguments =

@@ -12,8 +12,6 @@
 namespace cellist::test {
 namespace {
 
-using nlohmann::json;
-
 oit::Measurement measured(const oit::Quality& quality, double ms, double psnr_db,
                           std::string_view method = "linked") {
     oit::Measurement measurement{.setting = {&oit::method_named(method), quality}};
@@ -90,7 +88,7 @@ TEST_CASE("times whose spreads overlap are not distinct") {
     std::ostringstream out;
     print(noisy, out);
     CHECK(contains(out.str(), "counted  not significant"));
-    const json metrics = json::parse(oit::dump(to_json(noisy), 2));
+    const nlohmann::json metrics = nlohmann::json::parse(oit::dump(to_json(noisy), 2));
     CHECK(metrics["exact_methods"][1]["distinct"] == false);
     CHECK(oit::exact_methods(sweep())[1].is_distinct);
 }
@@ -147,7 +145,7 @@ TEST_CASE("base64 is that of RFC 4648") {
 }
 
 TEST_CASE("metrics are read from JSON as they were") {
-    const json metrics = json::parse(oit::dump(to_json(sweep()), 2));
+    const nlohmann::json metrics = nlohmann::json::parse(oit::dump(to_json(sweep()), 2));
     CHECK(metrics["scene"] == "<script><b>\"&',.obj");
     CHECK(metrics["alpha"] == 0.35);
     CHECK(metrics["settings"].size() == 4);
@@ -178,10 +176,10 @@ TEST_CASE("lines of CSV have a field for each name") {
 }
 
 // The page of a sweep, and the JSON that is in it.
-json metrics_of(const std::string& page) {
+nlohmann::json metrics_of(const std::string& page) {
     const std::string begin = "id=\"metrics\">";
     const std::size_t from = page.find(begin) + begin.size();
-    return json::parse(page.substr(from, page.find("</script>", from) - from));
+    return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
 }
 
 // Nothing is loaded, and nothing that is not the page's own is markup.
@@ -207,16 +205,16 @@ TEST_CASE("a page needs no other file, and shows names as text") {
     require_self_contained(page);
     CHECK(contains(page, "&lt;script&gt;&lt;b&gt;&quot;&amp;',.obj"));
     CHECK_FALSE(contains(page, "<b>"));
-    const json metrics = metrics_of(page);
+    const nlohmann::json metrics = metrics_of(page);
     CHECK(metrics["scene"] == all.scene_name());
     CHECK(metrics["settings"][2]["picture"] == 0);
     CHECK(metrics["settings"][2]["difference"] == 1);
 }
 
 // Measurements with the times and the error that a report has.
-std::vector<oit::Measurement> measurements_of(const json& settings) {
+std::vector<oit::Measurement> measurements_of(const nlohmann::json& settings) {
     std::vector<oit::Measurement> measurements;
-    for (const json& setting : settings) {
+    for (const nlohmann::json& setting : settings) {
         oit::Measurement measurement = measured({}, 0, setting["psnr_db"]);
         measurement.milliseconds = setting["ms"];
         measurement.fastest = setting["fastest_ms"];
@@ -236,11 +234,11 @@ TEST_CASE("a run writes table, JSON, CSV and page") {
     REQUIRE(result.exit_code == 0);
     CHECK(count_of(result.error, "\n") == 2);
     CHECK(contains(result.out, "--method moments"));
-    const json metrics = json::parse(read_file(program.folder() / "a.json"));
+    const nlohmann::json metrics = nlohmann::json::parse(read_file(program.folder() / "a.json"));
     CHECK(metrics["scene"] == "knot.obj");
     CHECK(metrics["eyes"] == 2);
     REQUIRE(metrics["settings"].size() == 2);
-    for (const json& setting : metrics["settings"]) {
+    for (const nlohmann::json& setting : metrics["settings"]) {
         CHECK(setting["ms"] > 0);
         CHECK(setting["frames"] == 4);
         CHECK(setting["lower_quartile_ms"] <= setting["ms"]);
