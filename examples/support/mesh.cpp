@@ -10,12 +10,10 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "mesh/raw_mesh.hpp"
+
 namespace support {
 namespace {
-
-bool is_finite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 struct VertexKey {
     std::array<std::uint32_t, 10> bits;

@@ -31,7 +31,7 @@ CELLIST_STRUCT(SelftestInsert, x, y, record);
 
 namespace {
 
-constexpr auto source = R"(
+constexpr auto selftest_source = R"(
 #include <cellist/lists.clh>
 
 kernel void selftest_insert(CELLIST_LISTS(SelftestRecord, lists),
@@ -140,7 +140,7 @@ public:
     }
 
     std::string takes_the_nearest() {
-        Kernel nearest(device_, source, "selftest_nearest", lists(), type<SelftestInsert>);
+        Kernel nearest(device_, selftest_source, "selftest_nearest", lists(), type<SelftestInsert>);
         build(lists(), inserts_.size());
         Buffer<SelftestRecord> out(device_, width * height * 4);
         Buffer<cl_uint> counts(device_, width * height);
@@ -220,7 +220,8 @@ private:
     /// Builds lists from the first `count` inserts.
     BuildReport build(Lists<SelftestRecord>& lists, std::size_t count) {
         if (!insert_)
-            insert_.emplace(device_, source, "selftest_insert", lists, type<SelftestInsert>);
+            insert_.emplace(device_, selftest_source, "selftest_insert", lists,
+                            type<SelftestInsert>);
         const Buffer<SelftestInsert> inserts(device_, inserts_);
         return lists.build(*insert_, Range::padded(count), inserts, static_cast<cl_uint>(count));
     }

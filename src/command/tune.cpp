@@ -21,7 +21,7 @@ CELLIST_STRUCT(TuneRecord, words);
 
 namespace {
 
-constexpr auto source = R"(
+constexpr auto tune_source = R"(
 #include <cellist/lists.clh>
 
 // The number of cells is a power of two.
@@ -57,7 +57,7 @@ detail::Cost measure(const Device& device, Storage storage, detail::Pattern patt
                      std::uint64_t records, std::uint32_t slots) {
     Lists<TuneRecord> lists(device, {records / occupancy},
                             {.storage = storage, .capacity_nodes = records, .slots = slots});
-    Kernel insert(device, source, "tune_insert", lists);
+    Kernel insert(device, tune_source, "tune_insert", lists);
     const auto is_random = static_cast<cl_uint>(pattern == detail::Pattern::random);
     detail::Cost least;
     for (int i = 0; i < builds; ++i) {
@@ -81,7 +81,7 @@ detail::Cost measure(const Device& device, Storage storage, detail::Pattern patt
 std::uint32_t longest(const Device& device, detail::Pattern pattern, std::uint64_t records) {
     if (pattern == detail::Pattern::coherent) return occupancy;
     Lists<TuneRecord> lists(device, {records / occupancy}, {.storage = Storage::counted});
-    Kernel insert(device, source, "tune_insert", lists);
+    Kernel insert(device, tune_source, "tune_insert", lists);
     lists.build(insert, records, cl_uint{1});
     return static_cast<std::uint32_t>(lists.lengths().longest);
 }

@@ -9,7 +9,7 @@
 namespace oit {
 namespace {
 
-constexpr std::array sizes{2U, 4U, 8U, 16U, 32U};
+constexpr std::array bucket_peeling_sizes{2U, 4U, 8U, 16U, 32U};
 constexpr std::uint32_t default_buckets = 8;
 
 // Least and greatest depth, as bits.
@@ -17,7 +17,7 @@ struct Range {
     cl_uint least, greatest;
 };
 
-std::string refusal(const Frame& frame, const FrameFeatures& features) {
+std::string bucket_peeling_refusal(const Frame& frame, const FrameFeatures& features) {
     if (frame.quality.layers) return "it takes layers out of order and cannot count them";
     return peeling_refusal(frame, features);
 }
@@ -26,7 +26,7 @@ std::size_t buckets_of(const FragmentSource& source) {
     return source.frame().quality.size.value_or(default_buckets);
 }
 
-std::string text(const FragmentSource& source, const std::string& defines = {}) {
+std::string bucket_peeling_source(const FragmentSource& source, const std::string& defines = {}) {
     return defines + define("OIT_BUCKETS", buckets_of(source)) +
            peeling_text(kernels::bucket_peeling_cl);
 }
@@ -35,11 +35,15 @@ class BucketPeeling : public Method {
 public:
     explicit BucketPeeling(FragmentSource& source)
         : source_(source),
-          find_range_(source.pass(text(source, "#define OIT_FIND_RANGE\n"), "bucket_peeling.cl")),
-          find_keys_(source.pass(text(source, "#define OIT_FIND_KEYS\n"), "bucket_peeling.cl")),
-          take_(source.pass(text(source), "bucket_peeling.cl")),
-          peel_(source.screen_kernel(text(source), "bucket_peeling.cl", "oit_peel_buckets")),
-          finish_(source.screen_kernel(text(source), "bucket_peeling.cl", "oit_finish_peeling")),
+          find_range_(source.pass(bucket_peeling_source(source, "#define OIT_FIND_RANGE\n"),
+                                  "bucket_peeling.cl")),
+          find_keys_(source.pass(bucket_peeling_source(source, "#define OIT_FIND_KEYS\n"),
+                                 "bucket_peeling.cl")),
+          take_(source.pass(bucket_peeling_source(source), "bucket_peeling.cl")),
+          peel_(source.screen_kernel(bucket_peeling_source(source), "bucket_peeling.cl",
+                                     "oit_peel_buckets")),
+          finish_(source.screen_kernel(bucket_peeling_source(source), "bucket_peeling.cl",
+                                       "oit_finish_peeling")),
           begin_(source.device(), source.frame().pixels()),
           range_(source.device(), source.frame().pixels()),
           keys_(source.device(), buckets_of(source) * source.frame().pixels()),
@@ -90,18 +94,18 @@ private:
 };
 
 // The range of depth, then keys and layers at least once.
-std::uint64_t passes(const SurveyResult&, const Quality&) { return 3; }
+std::uint64_t bucket_peeling_passes(const SurveyResult&, const Quality&) { return 3; }
 
-const MethodRegistration bucket_peeling(
+const MethodRegistration bucket_peeling_method(
     {.name = "bucket_peeling",
      .summary = "a layer of each depth range in a pass, 8 ranges by default (Liu et al. 2009)",
      .position = 60,
      .exact = true,
-     .sizes = sizes,
-     .refusal = refusal,
+     .sizes = bucket_peeling_sizes,
+     .refusal = bucket_peeling_refusal,
      .make = make_peeling<BucketPeeling>,
      .bound = bound_of_layers,
-     .passes = passes});
+     .passes = bucket_peeling_passes});
 
 }  // namespace
 }  // namespace oit

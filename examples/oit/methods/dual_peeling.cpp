@@ -11,7 +11,7 @@ struct Keys {
     cl_ulong front, back;
 };
 
-std::string refusal(const Frame& frame, const FrameFeatures& features) {
+std::string dual_peeling_refusal(const Frame& frame, const FrameFeatures& features) {
     if (features.has(Blend::absorb) || features.has(Blend::user))
         return "it blends from both sides and does not know the distances between layers";
     if (frame.quality.layers) return "it takes the farthest layers together with the nearest";
@@ -65,19 +65,19 @@ private:
 };
 
 // The first takes no layer.
-std::uint64_t passes(const SurveyResult& scene, const Quality&) {
+std::uint64_t dual_peeling_passes(const SurveyResult& scene, const Quality&) {
     return (scene.longest + 1) / 2 + 1;
 }
 
-const MethodRegistration dual_peeling(
+const MethodRegistration dual_peeling_method(
     {.name = "dual_peeling",
      .summary = "the nearest and the farthest layer in each pass (Bavoil, Myers 2008)",
      .position = 50,
      .exact = true,
-     .refusal = refusal,
+     .refusal = dual_peeling_refusal,
      .make = make_peeling<DualPeeling>,
      .bound = bound_of_layers,
-     .passes = passes});
+     .passes = dual_peeling_passes});
 
 }  // namespace
 }  // namespace oit

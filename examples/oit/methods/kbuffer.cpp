@@ -8,14 +8,14 @@
 namespace oit {
 namespace {
 
-constexpr std::array sizes{1U, 2U, 4U, 8U, 16U, 32U, 64U};
+constexpr std::array kbuffer_sizes{1U, 2U, 4U, 8U, 16U, 32U, 64U};
 constexpr std::uint32_t default_slots = 8;
 
 std::uint32_t slots_of(const Quality& quality) {
     return quality.size.value_or(quality.layers.value_or(default_slots));
 }
 
-std::unique_ptr<Method> make(FragmentSource& source) {
+std::unique_ptr<Method> make_kbuffer(FragmentSource& source) {
     // The records that are not among the nearest are dropped.
     cellist::ListsOptions options{.overflow = cellist::Overflow::drop};
     options.storage = with_node_type(source.layout().words, [&]<class Node>(const Node*) {
@@ -24,7 +24,7 @@ std::unique_ptr<Method> make(FragmentSource& source) {
     return make_list_method(source, options);
 }
 
-std::string refusal(const Frame& frame, const FrameFeatures&) {
+std::string kbuffer_refusal(const Frame& frame, const FrameFeatures&) {
     const Quality& quality = frame.quality;
     if (!quality.size || !quality.layers || *quality.layers <= *quality.size) return {};
     return "it keeps " + std::to_string(*quality.size) + " layers, and cannot blend " +
@@ -32,21 +32,21 @@ std::string refusal(const Frame& frame, const FrameFeatures&) {
 }
 
 // Its slots hold the nearest layers.
-std::optional<PictureError> bound(const SurveyResult& scene, const Quality& quality) {
+std::optional<PictureError> kbuffer_bound(const SurveyResult& scene, const Quality& quality) {
     Quality nearest = quality;
     nearest.layers = std::min(slots_of(quality), quality.layers.value_or(~0U));
     return bound_of_layers(scene, nearest);
 }
 
-const MethodRegistration kbuffer(
+const MethodRegistration kbuffer_method(
     {.name = "kbuffer",
      .summary = "the nearest layers, 8 by default (Bavoil et al. 2007)",
      .position = 70,
      .exact = false,
-     .sizes = sizes,
-     .refusal = refusal,
-     .make = make,
-     .bound = bound,
+     .sizes = kbuffer_sizes,
+     .refusal = kbuffer_refusal,
+     .make = make_kbuffer,
+     .bound = kbuffer_bound,
      .passes = two_passes});
 
 }  // namespace

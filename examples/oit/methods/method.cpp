@@ -8,7 +8,7 @@
 namespace oit {
 namespace {
 
-std::vector<MethodInfo>& table() {
+std::vector<MethodInfo>& method_table() {
     static std::vector<MethodInfo> methods;
     return methods;
 }
@@ -16,19 +16,19 @@ std::vector<MethodInfo>& table() {
 }  // namespace
 
 MethodRegistration::MethodRegistration(const MethodInfo& info) {
-    std::vector<MethodInfo>& methods = table();
+    std::vector<MethodInfo>& methods = method_table();
     const auto after = std::find_if(methods.begin(), methods.end(), [&](const MethodInfo& other) {
         return other.position > info.position;
     });
     methods.insert(after, info);
 }
 
-std::span<const MethodInfo> methods() { return table(); }
+std::span<const MethodInfo> methods() { return method_table(); }
 
 const MethodInfo& method_named(std::string_view name) {
     std::string list;
     std::vector<std::string> names;
-    for (const MethodInfo& info : table()) {
+    for (const MethodInfo& info : method_table()) {
         if (info.name == name) return info;
         list.append(list.empty() ? "" : ", ").append(info.name);
         names.emplace_back(info.name);

@@ -5,7 +5,7 @@
 namespace oit {
 namespace {
 
-std::string text(const std::string& defines = {}) {
+std::string moments_source(const std::string& defines = {}) {
     return defines + accumulating_text(kernels::moments_cl);
 }
 
@@ -13,8 +13,8 @@ class Moments : public AccumulatingMethod {
 public:
     explicit Moments(FragmentSource& source)
         : AccumulatingMethod(source),
-          sum_moments_(source.pass(text("#define OIT_MOMENTS\n"), "moments.cl")),
-          add_(source.pass(text(), "moments.cl")),
+          sum_moments_(source.pass(moments_source("#define OIT_MOMENTS\n"), "moments.cl")),
+          add_(source.pass(moments_source(), "moments.cl")),
           moments_(source.device(), 5 * source.samples()),
           nearest_(source.device(), source.samples()) {}
 
@@ -36,7 +36,7 @@ private:
     cellist::Buffer<cl_uint> nearest_;
 };
 
-const MethodRegistration moments(
+const MethodRegistration moments_method(
     {.name = "moments",
      .summary = "transmittance from four moments of depth (Muenstermann et al. 2018)",
      .position = 100,

@@ -53,11 +53,11 @@ private:
     cellist::Buffer<cl_uint> left_;
 };
 
-std::uint64_t passes(const SurveyResult& scene, const Quality& quality) {
+std::uint64_t peeling_passes(const SurveyResult& scene, const Quality& quality) {
     return std::min<std::uint64_t>(scene.longest, quality.layers.value_or(~0U)) + 1;
 }
 
-const MethodRegistration peeling(
+const MethodRegistration peeling_method(
     {.name = "peeling",
      .summary = "depth peeling: the scene is drawn once for each layer (Everitt 2001)",
      .position = 40,
@@ -65,7 +65,7 @@ const MethodRegistration peeling(
      .refusal = peeling_refusal,
      .make = make_peeling<Peeling>,
      .bound = bound_of_layers,
-     .passes = passes});
+     .passes = peeling_passes});
 
 }  // namespace
 }  // namespace oit

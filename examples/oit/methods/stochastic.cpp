@@ -7,14 +7,14 @@
 namespace oit {
 namespace {
 
-constexpr std::array sizes{2U, 4U, 8U, 16U, 32U, 64U};
+constexpr std::array stochastic_sizes{2U, 4U, 8U, 16U, 32U, 64U};
 constexpr std::uint32_t default_trials = 8;
 
 std::uint32_t trials_of(const FragmentSource& source) {
     return source.frame().quality.size.value_or(default_trials);
 }
 
-std::string text(const FragmentSource& source, const std::string& defines = {}) {
+std::string stochastic_source(const FragmentSource& source, const std::string& defines = {}) {
     return defines + define("OIT_TRIALS", trials_of(source)) +
            accumulating_text(kernels::stochastic_cl);
 }
@@ -23,8 +23,8 @@ class Stochastic : public AccumulatingMethod {
 public:
     explicit Stochastic(FragmentSource& source)
         : AccumulatingMethod(source),
-          hide_(source.pass(text(source, "#define OIT_HIDE\n"), "stochastic.cl")),
-          add_(source.pass(text(source), "stochastic.cl")),
+          hide_(source.pass(stochastic_source(source, "#define OIT_HIDE\n"), "stochastic.cl")),
+          add_(source.pass(stochastic_source(source), "stochastic.cl")),
           depths_(source.device(), trials_of(source) * source.samples()) {}
 
     void store() override {
@@ -43,13 +43,13 @@ private:
     cellist::Buffer<cl_uint> depths_;
 };
 
-const MethodRegistration stochastic(
+const MethodRegistration stochastic_method(
     {.name = "stochastic",
      .summary = "random trials of visibility, 8 by default (Enderton et al. 2010)",
      .position = 90,
      .exact = false,
      .has_nodes = false,
-     .sizes = sizes,
+     .sizes = stochastic_sizes,
      .refusal = accumulating_refusal,
      .make = make_accumulating<Stochastic>,
      .passes = two_passes});

@@ -20,7 +20,7 @@ private:
     raster::Pass pass_;
 };
 
-const MethodRegistration weighted(
+const MethodRegistration weighted_method(
     {.name = "weighted",
      .summary = "a mean weighted by opacity and nearness, one pass (McGuire, Bavoil 2013)",
      .position = 80,

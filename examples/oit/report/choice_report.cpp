@@ -236,13 +236,13 @@ std::string not_met_text(const Choice& choice, const Budget& budget, const Budge
     return text;
 }
 
-nlohmann::ordered_json json_of(const PictureError& error) {
+nlohmann::ordered_json measured_json(const PictureError& error) {
     nlohmann::ordered_json json{{"largest", error.largest}, {"psnr_db", nullptr}};
     if (std::isfinite(error.psnr_db())) json["psnr_db"] = error.psnr_db();
     return json;
 }
 
-nlohmann::ordered_json json_of(const Spread& times) {
+nlohmann::ordered_json measured_json(const Spread& times) {
     return {{"ms", times.median_ms},
             {"fastest_ms", times.least_ms},
             {"lower_quartile_ms", times.lower_quartile_ms},
@@ -314,10 +314,10 @@ nlohmann::ordered_json json_of(const Choice& choice, const Budget& budget,
     json["verdict"] = record.verdict();
     json["undecided_pixels"] = record.undecided_pixels();
     json["setting"] = text(choice.setting);
-    json["error"] = json_of(choice.errors.resolved);
-    json["error_with_any_order"] = json_of(choice.errors.all);
+    json["error"] = measured_json(choice.errors.resolved);
+    json["error_with_any_order"] = measured_json(choice.errors.all);
     json["bounded"] = choice.bounded;
-    json.update(json_of(choice.times));
+    json.update(measured_json(choice.times));
     json["timed_frames"] = choice.timed_frames;
     json["exact_times"] = nullptr;
     if (choice.exact_times) json["exact_times"] = *choice.exact_times;
@@ -332,15 +332,15 @@ nlohmann::ordered_json json_of(const Choice& choice, const Budget& budget,
                      {"least_alpha", choice.scene.least_alpha},
                      {"greatest_alpha", choice.scene.greatest_alpha},
                      {"pixels_unresolved", choice.scene.pixels_unresolved},
-                     {"exact", json_of(choice.scene.exact)}};
+                     {"exact", measured_json(choice.scene.exact)}};
     json["candidates"] = nlohmann::ordered_json::array();
     for (const Candidate& candidate : choice.candidates) {
         nlohmann::ordered_json entry{{"setting", text(candidate.setting)},
                                      {"outcome", outcomes[static_cast<int>(candidate.outcome)]}};
-        if (candidate.error) entry["error"] = json_of(*candidate.error);
+        if (candidate.error) entry["error"] = measured_json(*candidate.error);
         if (candidate.fastest_ms) entry["fastest_ms"] = *candidate.fastest_ms;
         if (candidate.times_fastest) entry["times_fastest"] = *candidate.times_fastest;
-        if (candidate.times) entry.update(json_of(*candidate.times));
+        if (candidate.times) entry.update(measured_json(*candidate.times));
         if (candidate.times_chosen) entry["times_chosen"] = *candidate.times_chosen;
         if (!candidate.failure.empty()) entry["failure"] = candidate.failure;
         json["candidates"].push_back(entry);
@@ -348,7 +348,7 @@ nlohmann::ordered_json json_of(const Choice& choice, const Budget& budget,
     json["frames"] = {
         {"drawn", record.frames()},    {"changed", record.changed()},
         {"checked", record.checked()}, {"chosen_again", record.chosen_again()},
-        {"over_at", record.over()},    {"worst", json_of(budget.counted(record.worst()))}};
+        {"over_at", record.over()},    {"worst", measured_json(budget.counted(record.worst()))}};
     return json;
 }
 

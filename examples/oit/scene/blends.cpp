@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include <glm/ext/matrix_transform.hpp>
@@ -17,10 +16,9 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-constexpr double turn = 2 * std::numbers::pi;
 constexpr double tray_height = -0.42;
 constexpr double gap = 0.004;  ///< between the tray and what stands on it
-constexpr int segments = 96;
+constexpr int segments_around = 96;
 
 using Tint = std::array<float, 3>;
 
@@ -39,7 +37,7 @@ std::vector<dvec2> bottle_profile(double radius, double shoulder, double neck_ra
     constexpr int parts = 8;
     std::vector<dvec2> profile{{0, 0}};
     const auto add = [&](const dvec2& centre, double r, double begin, double end) {
-        const auto points = arc(centre, r, turn / 4 * begin, turn / 4 * end, parts);
+        const auto points = arc(centre, r, full_turn / 4 * begin, full_turn / 4 * end, parts);
         profile.insert(profile.end(), points.begin(), points.end());
     };
     add({radius - rounding, rounding}, rounding, -1, 0);
@@ -50,9 +48,9 @@ std::vector<dvec2> bottle_profile(double radius, double shoulder, double neck_ra
 }
 
 // Builds the scene part by part.
-class Builder {
+class BlendsBuilder {
 public:
-    explicit Builder(float alpha) : alpha_(alpha) {}
+    explicit BlendsBuilder(float alpha) : alpha_(alpha) {}
 
     Scene build() {
         add_tray();
@@ -79,12 +77,12 @@ private:
     /// Stands what was turned about the z axis upright, at (x, z) and so far above the tray.
     static glm::dmat4 standing(const dvec2& at, double above = gap) {
         return glm::rotate(glm::translate(glm::dmat4(1), dvec3(at.x, tray_height + above, at.y)),
-                           -turn / 4, dvec3(1, 0, 0));
+                           -full_turn / 4, dvec3(1, 0, 0));
     }
 
     void add_tray() {
         const dvec2 profile[] = {{0, -0.05}, {0.86, -0.05}, {0.88, -0.03}, {0.88, 0}, {0, 0}};
-        add(lathe(divided(profile, 0.1), segments, Corners::sharp),
+        add(lathe(divided(profile, 0.1), segments_around, Corners::sharp),
             material({0.30F, 0.21F, 0.13F}, Blend::opaque, 1, 0.3F), standing({0, 0}, 0));
         const dvec2 rod[] = {{0, 0}, {0.035, 0}, {0.035, 0.95}, {0, 0.95}};
         for (int i = 0; i < 9; ++i) {
@@ -98,9 +96,10 @@ private:
     /// Glass around a medium; the tint is what passes a unit of length.
     void add_bottle(const dvec2& at, double radius, const Tint& tint) {
         constexpr double wall = 0.015;
-        add(lathe(bottle_profile(radius, 0.42, 0.06, 0.80), segments, Corners::round),
+        add(lathe(bottle_profile(radius, 0.42, 0.06, 0.80), segments_around, Corners::round),
             material({0.20F, 0.24F, 0.26F}, Blend::over, 0.3F * alpha_, 0.6F), standing(at));
-        add(lathe(bottle_profile(radius - wall, 0.40, 0.06 - wall, 0.62), segments, Corners::round),
+        add(lathe(bottle_profile(radius - wall, 0.40, 0.06 - wall, 0.62), segments_around,
+                  Corners::round),
             material(tint, Blend::absorb, 1, 0), standing(at, gap + wall));
     }
 
@@ -109,11 +108,11 @@ private:
         const std::array<Tint, 3> tints{
             {{0.02F, 0.72F, 0.90F}, {0.90F, 0.05F, 0.60F}, {0.95F, 0.85F, 0.03F}}};
         for (std::size_t i = 0; i < tints.size(); ++i) {
-            const double angle = turn * (0.25 + static_cast<double>(i) / 3);
+            const double angle = full_turn * (0.25 + static_cast<double>(i) / 3);
             const dvec3 at(-0.05 + 0.12 * std::cos(angle), -0.14 + 0.12 * std::sin(angle),
                            0.40 + 0.04 * static_cast<double>(i));
             const dvec2 profile[] = {{0.18, 0}, {0, 0}};
-            add(lathe(profile, segments, Corners::sharp),
+            add(lathe(profile, segments_around, Corners::sharp),
                 material(tints[i], Blend::multiplicative, 0.9F, 0),
                 glm::translate(glm::dmat4(1), at));
         }
@@ -128,14 +127,14 @@ private:
             std::vector<dvec2> flame;
             for (int i = 0; i <= 24; ++i) {
                 const double up = i / 24.0;
-                flame.emplace_back(0.055 * size * std::sin(turn / 2 * std::sqrt(up)),
+                flame.emplace_back(0.055 * size * std::sin(full_turn / 2 * std::sqrt(up)),
                                    size * 0.20 * up);
             }
             flame.front().x = flame.back().x = 0;
             add(lathe(flame, 48, Corners::round),
                 material({1.0F, 0.45F, 0.08F}, Blend::additive, 0.35F, 0), standing(at, 0.30));
         }
-        add(sleeve(0.100, 0.106, 0, 0.62, segments, 0.05),
+        add(sleeve(0.100, 0.106, 0, 0.62, segments_around, 0.05),
             material({0.16F, 0.20F, 0.24F}, Blend::over, 0.3F * alpha_, 0.6F), standing(at));
     }
 
@@ -143,12 +142,12 @@ private:
     Scene scene_;
 };
 
-Scene make(float alpha) { return Builder(alpha).build(); }
+Scene make_blends(float alpha) { return BlendsBuilder(alpha).build(); }
 
-const SceneRegistration blends(
+const SceneRegistration blends_scene(
     {.name = "blends",
      .summary = "a still life of surfaces that cover, add, filter and absorb, before opaque ones",
-     .make = make});
+     .make = make_blends});
 
 }  // namespace
 }  // namespace oit

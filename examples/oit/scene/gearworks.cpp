@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
@@ -19,7 +18,6 @@ namespace {
 constexpr std::uint64_t triangles_in_all = 602'000;
 constexpr std::uint64_t triangles_of_glass = 254'000;
 
-constexpr double turn = 2 * std::numbers::pi;
 constexpr int planets = 6;
 constexpr int levels = 10;
 constexpr double shaft_distance = 0.51;
@@ -48,9 +46,9 @@ Material surface(const std::array<float, 3>& tint, float gloss, float alpha, Ble
 }
 
 // Puts the machine together.
-class Builder {
+class GearworksBuilder {
 public:
-    explicit Builder(float alpha) {
+    explicit GearworksBuilder(float alpha) {
         const std::array<std::array<float, 3>, 4> tints{{{0.04F, 0.55F, 0.85F},
                                                          {0.90F, 0.10F, 0.32F},
                                                          {0.95F, 0.55F, 0.05F},
@@ -93,7 +91,7 @@ private:
         return gear_glass_[static_cast<std::size_t>(i) % gear_glass_.size()];
     }
 
-    static double planet_angle(int planet) { return turn * (planet + 0.5) / planets; }
+    static double planet_angle(int planet) { return full_turn * (planet + 0.5) / planets; }
 
     glm::dmat4 at_planet(int planet, double z) const {
         const double angle = planet_angle(planet);
@@ -124,8 +122,8 @@ private:
             for (int planet = 0; planet < planets; ++planet) {
                 // A tooth of the one meets a gap of the other in the direction between the shafts.
                 const double angle = planet_angle(planet);
-                const double tooth = angle * teeth / turn;
-                const double own = angle + turn / 2 - (0.5 - tooth) * turn / driven.teeth;
+                const double tooth = angle * teeth / full_turn;
+                const double own = angle + full_turn / 2 - (0.5 - tooth) * full_turn / driven.teeth;
                 add(driven_model, tinted(planet + level),
                     glm::rotate(at_planet(planet, height_of(level)), own, glm::dvec3(0, 0, 1)),
                     -speed * teeth / driven.teeth);
@@ -168,7 +166,7 @@ private:
             add(inner_race, steel_, place);
             add(outer_race, brass_, place);
             for (int i = 0; i < balls; ++i) {
-                const double angle = turn * i / balls;
+                const double angle = full_turn * i / balls;
                 add(ball_model, steel_,
                     glm::translate(place,
                                    glm::dvec3(0.07 * std::cos(angle), 0.07 * std::sin(angle), 0)));
@@ -184,7 +182,8 @@ private:
     void add_case() {
         std::vector<glm::dvec2> profile;
         const auto quarters = [&](double z, double radius, int begin, int end) {
-            const auto points = arc({0.78, z}, radius, turn / 4 * begin, turn / 4 * end, 15);
+            const auto points =
+                arc({0.78, z}, radius, full_turn / 4 * begin, full_turn / 4 * end, 15);
             profile.insert(profile.end(), points.begin(), points.end());
         };
         quarters(-0.41, 0.08, -1, 0);  // outside
@@ -211,7 +210,7 @@ private:
         const std::size_t bolt = add_model(lathe(bolt_profile, 36, Corners::sharp));
         for (const double z : {-0.42, 0.42})
             for (int i = 0; i < bolts; ++i) {
-                const double angle = turn * (i + 0.5) / bolts;
+                const double angle = full_turn * (i + 0.5) / bolts;
                 add(bolt, steel_, moved(0.74 * std::cos(angle), 0.74 * std::sin(angle), z));
             }
     }
@@ -240,12 +239,12 @@ private:
 };
 
 // With so many layers, the glass of each is thin.
-Scene make(float alpha) { return Builder(0.4F * alpha).build(); }
+Scene make_gearworks(float alpha) { return GearworksBuilder(0.4F * alpha).build(); }
 
-const SceneRegistration gearworks(
+const SceneRegistration gearworks_scene(
     {.name = "gearworks",
      .summary = "a gearbox of glass and metal: 602,000 triangles, animated",
-     .make = make});
+     .make = make_gearworks});
 
 }  // namespace
 }  // namespace oit

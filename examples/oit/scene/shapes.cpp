@@ -16,8 +16,6 @@ using glm::dvec2;
 using glm::dvec3;
 using support::Mesh;
 
-constexpr double turn = 2 * std::numbers::pi;
-
 dvec3 around(double angle, const dvec2& radius_and_z) {
     return {radius_and_z.x * std::cos(angle), radius_and_z.x * std::sin(angle), radius_and_z.y};
 }
@@ -119,8 +117,8 @@ Mesh lathe(std::span<const dvec2> profile, int segments, Corners corners) {
     const auto add_circle = [&](const dvec2& point, const dvec2& normal) {
         const auto first = static_cast<std::uint32_t>(mesh.positions.size());
         for (int i = 0; i < segments; ++i)
-            add_vertex(mesh, around(turn * i / segments, point),
-                       around(turn * i / segments, normal));
+            add_vertex(mesh, around(full_turn * i / segments, point),
+                       around(full_turn * i / segments, normal));
         return first;
     };
     for (std::size_t k = 0; k + 1 < profile.size(); ++k) {
@@ -146,7 +144,7 @@ Mesh ball(double radius, int segments) {
 }
 
 Mesh ring(double radius, double wire_radius, int segments, int wire_segments) {
-    std::vector<dvec2> profile = arc({radius, 0}, wire_radius, 0, turn, wire_segments);
+    std::vector<dvec2> profile = arc({radius, 0}, wire_radius, 0, full_turn, wire_segments);
     profile.back() = profile.front();
     return lathe(profile, segments, Corners::round);
 }
@@ -161,7 +159,7 @@ Mesh gear(const Gear& shape) {
     const int points = shape.teeth * shape.tooth_points;
     std::vector<dvec2> outer, inner;
     for (int i = 0; i < points; ++i) {
-        const double angle = turn * i / points;
+        const double angle = full_turn * i / points;
         const double part = static_cast<double>(i % shape.tooth_points) / shape.tooth_points;
         const double radius = shape.pitch_radius + (tooth_profile(part) - 0.5) * shape.tooth_height;
         outer.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
@@ -193,13 +191,13 @@ Mesh spring(const Spring& shape, std::size_t triangles) {
     struct Section {
         dvec3 centre, outwards, up;
         [[nodiscard]] dvec3 direction(double part) const {
-            return std::cos(turn * part) * outwards + std::sin(turn * part) * up;
+            return std::cos(full_turn * part) * outwards + std::sin(full_turn * part) * up;
         }
     };
     const auto section = [&](std::size_t i) {
         const double part = static_cast<double>(i) / static_cast<double>(rings);
-        const double angle = turn * shape.turns * part;
-        const double rise = (shape.high - shape.low) / (turn * shape.turns);
+        const double angle = full_turn * shape.turns * part;
+        const double rise = (shape.high - shape.low) / (full_turn * shape.turns);
         const dvec3 forward = glm::normalize(
             dvec3(-shape.radius * std::sin(angle), shape.radius * std::cos(angle), rise));
         const dvec3 outwards(std::cos(angle), std::sin(angle), 0);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -8,6 +9,8 @@
 #include "mesh.hpp"
 
 namespace oit {
+
+inline constexpr double full_turn = 2 * std::numbers::pi;  ///< in radians
 
 /// How a surface looks where its parts meet.
 enum class Corners { sharp, round };

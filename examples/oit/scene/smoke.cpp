@@ -3,19 +3,18 @@
 // Surfaces", IEEE TVCG 2008, section 3).
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "scene/scenes.hpp"
+#include "scene/shapes.hpp"
 
 namespace oit {
 namespace {
 
 using glm::dvec3;
 
-constexpr double turn = 2 * std::numbers::pi;
 constexpr int surfaces = 4;
 constexpr int seeds = 240;  ///< particles of a ring
 constexpr int steps = 280;  ///< of time, each leaving a row of vertices
@@ -57,7 +56,7 @@ class Trace {
 public:
     explicit Trace(double radius) {
         for (int i = 0; i < seeds; ++i) {
-            const double angle = turn * i / seeds;
+            const double angle = full_turn * i / seeds;
             // A scalloped ring gives folds.
             const double r = radius * (1 + 0.15 * std::cos(5 * angle));
             points_.emplace_back(r * std::cos(angle), -0.95, r * std::sin(angle));
@@ -121,7 +120,7 @@ void fit(Scene& scene) {
     scene.lighting = studio_lighting(static_cast<float>(-0.51 * scale * (high - low).y));
 }
 
-Scene make(float alpha) {
+Scene make_smoke(float alpha) {
     Scene scene;
     const float tints[surfaces][3] = {
         {0.75F, 0.72F, 0.68F}, {0.80F, 0.38F, 0.10F}, {0.16F, 0.42F, 0.70F}, {0.62F, 0.60F, 0.58F}};
@@ -139,10 +138,10 @@ Scene make(float alpha) {
     return scene;
 }
 
-const SceneRegistration smoke(
+const SceneRegistration smoke_scene(
     {.name = "smoke",
      .summary = "smoke surfaces whose opacity falls as the flow stretches them",
-     .make = make});
+     .make = make_smoke});
 
 }  // namespace
 }  // namespace oit

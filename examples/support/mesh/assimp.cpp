@@ -34,7 +34,7 @@
 namespace support {
 namespace {
 
-constexpr std::uint64_t limit_bytes = std::uint64_t{1} << 30;
+constexpr std::uint64_t most_bytes_of_file = std::uint64_t{1} << 30;
 
 // The file system that Assimp sees: the mesh, which is in memory, and regular files in its folder.
 class FolderFiles final : public Assimp::IOSystem {
@@ -55,7 +55,7 @@ public:
         const std::optional<std::filesystem::path> file = find(name);
         if (!file) return nullptr;
         try {
-            const std::string bytes = read_file("file", *file, limit_bytes);
+            const std::string bytes = read_file("file", *file, most_bytes_of_file);
             auto copy = std::make_unique<std::uint8_t[]>(bytes.size());
             std::memcpy(copy.get(), bytes.data(), bytes.size());
             return new Assimp::MemoryIOStream(copy.release(), bytes.size(), true);

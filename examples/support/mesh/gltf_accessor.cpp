@@ -59,7 +59,7 @@ double load_number(const char* at, GltfFormat format) {
     return 0;
 }
 
-std::string name_of(GltfFormat format) {
+std::string component_name(GltfFormat format) {
     return std::to_string(static_cast<int>(format.type)) +
            (format.is_normalized ? " (normalized)" : "");
 }
@@ -106,8 +106,9 @@ GltfAccessor::GltfAccessor(GltfFile& file, const GltfValue& index,
     if (std::find(formats.begin(), formats.end(), format_) == formats.end()) {
         std::string allowed;
         for (const GltfFormat format : formats)
-            allowed += (allowed.empty() ? "" : ", ") + name_of(format);
-        accessor.at("componentType").fail("is " + name_of(format_) + ", it may be " + allowed);
+            allowed += (allowed.empty() ? "" : ", ") + component_name(format);
+        accessor.at("componentType")
+            .fail("is " + component_name(format_) + ", it may be " + allowed);
     }
     element_bytes_ = bytes_of(format_.type) * components_;
     size_ = accessor.at("count").integer();

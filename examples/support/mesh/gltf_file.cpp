@@ -13,7 +13,7 @@
 namespace support {
 namespace {
 
-constexpr std::uint64_t limit_bytes = std::uint64_t{1} << 32;
+constexpr std::uint64_t most_bytes_of_buffer = std::uint64_t{1} << 32;
 constexpr std::size_t limit_depth = 256;
 constexpr std::size_t limit_values = std::size_t{1} << 24;
 
@@ -212,9 +212,10 @@ std::string_view GltfFile::buffer(const GltfValue& index) {
     const GltfValue buffer = root().at("buffers")[number];
     const std::string_view bytes = load_buffer(buffer, number);
     const GltfValue length = buffer.at("byteLength");
-    if (bytes.size() < length.integer(limit_bytes))
-        length.fail("is " + std::to_string(length.integer(limit_bytes)) + ", but the buffer has " +
-                    std::to_string(bytes.size()) + " bytes: it is cut off");
+    if (bytes.size() < length.integer(most_bytes_of_buffer))
+        length.fail("is " + std::to_string(length.integer(most_bytes_of_buffer)) +
+                    ", but the buffer has " + std::to_string(bytes.size()) +
+                    " bytes: it is cut off");
     return buffers_[number] = bytes;
 }
 
@@ -243,7 +244,7 @@ std::string_view GltfFile::load_buffer(const GltfValue& buffer, std::size_t numb
     const auto file = path_beside(path_, percent_decoded(text));
     if (!file) uri->fail("is not in the mesh's folder, and only files there are read");
     try {
-        bytes = read_file("buffer", *file, limit_bytes);
+        bytes = read_file("buffer", *file, most_bytes_of_buffer);
     } catch (const InputError& error) {
         uri->fail(error.what());
     }

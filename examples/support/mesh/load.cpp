@@ -15,7 +15,7 @@
 namespace support {
 namespace {
 
-constexpr std::uint64_t limit_bytes = std::uint64_t{1} << 30;
+constexpr std::uint64_t most_bytes_of_mesh = std::uint64_t{1} << 30;
 
 std::string lower_extension(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
@@ -42,7 +42,7 @@ MeshReader reader_of(const std::filesystem::path& path, std::string_view text) {
 Mesh load_mesh(const std::filesystem::path& path) {
     const std::string name = quoted("mesh", path);
     try {
-        std::string text = read_file("mesh", path, limit_bytes);
+        std::string text = read_file("mesh", path, most_bytes_of_mesh);
         // Skips the byte order mark that some editors put before UTF-8 text.
         if (text.starts_with("\xEF\xBB\xBF") && !is_binary_stl(text)) text.erase(0, 3);
         RawMesh raw = reader_of(path, text)(path, text);

@@ -14,12 +14,14 @@
 namespace support {
 namespace {
 
-constexpr std::uint64_t limit_bytes = std::uint64_t{1} << 26;
+constexpr std::uint64_t most_bytes_of_materials = std::uint64_t{1} << 26;
 
 class MtlReader {
 public:
     MtlReader(const std::filesystem::path& path, MtlLibrary& library)
-        : path_(path), library_(library), text_(read_file("material file", path, limit_bytes)) {}
+        : path_(path),
+          library_(library),
+          text_(read_file("material file", path, most_bytes_of_materials)) {}
 
     bool read() {
         TextLines lines(text_);

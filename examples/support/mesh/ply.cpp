@@ -100,9 +100,9 @@ private:
 };
 
 template <class Source>
-class Reader {
+class PlyReader {
 public:
-    Reader(const std::filesystem::path& path, const std::string& text, const PlyHeader& header)
+    PlyReader(const std::filesystem::path& path, const std::string& text, const PlyHeader& header)
         : path_(path), header_(header), source_(path, text, header) {}
 
     RawMesh read() {
@@ -267,8 +267,8 @@ private:
 RawMesh read_ply(const std::filesystem::path& path, const std::string& text) {
     const PlyHeader header = read_ply_header(path, text);
     if (header.format != PlyHeader::Format::ascii)
-        return Reader<PlyBytes>(path, text, header).read();
-    RawMesh mesh = Reader<PlyText>(path, text, header).read();
+        return PlyReader<PlyBytes>(path, text, header).read();
+    RawMesh mesh = PlyReader<PlyText>(path, text, header).read();
     mesh.ends_within_line = text.back() != '\n' && text.back() != '\r';
     return mesh;
 }

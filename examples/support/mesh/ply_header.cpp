@@ -9,8 +9,8 @@
 namespace support {
 namespace {
 
-constexpr std::string_view blanks = " \t\v\f";
-constexpr std::size_t most = 1000;  // elements, and properties of each
+constexpr std::string_view ply_blanks = " \t\v\f";
+constexpr std::size_t most_items = 1000;  // elements, and properties of each
 
 std::optional<PlyType> type_named(std::string_view name) {
     if (name == "char" || name == "int8") return PlyType::int8;
@@ -101,7 +101,7 @@ private:
             fail("is a second element '" + printable(element.name) + "'");
         element.count = static_cast<std::uint64_t>(*count);
         header_.elements.push_back(std::move(element));
-        if (header_.elements.size() > most) fail("has element 1001, the limit is 1000");
+        if (header_.elements.size() > most_items) fail("has element 1001, the limit is 1000");
     }
 
     void read_property() {
@@ -119,7 +119,7 @@ private:
         if (element.find(property.name) != nullptr)
             fail("is a second property '" + printable(property.name) + "'");
         element.properties.push_back(std::move(property));
-        if (element.properties.size() > most) fail("has property 1001, the limit is 1000");
+        if (element.properties.size() > most_items) fail("has property 1001, the limit is 1000");
     }
 
     // Binary data may start with a byte that looks like a line end. So the last line ends with the
@@ -128,7 +128,7 @@ private:
         if (!has_format_) fail("ends a header without 'format'");
         std::size_t at = lines_.offset();
         const auto is_at = [&](char c) { return at < text_.size() && text_[at] == c; };
-        while (at < text_.size() && blanks.find(text_[at]) != std::string_view::npos) ++at;
+        while (at < text_.size() && ply_blanks.find(text_[at]) != std::string_view::npos) ++at;
         if (is_at('\r') && lines_end_in_cr_) {
             ++at;
         } else {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -12,6 +13,10 @@
 #include "mesh.hpp"
 
 namespace support {
+
+[[nodiscard]] inline bool is_finite(const glm::vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 /// The polygons of a file, as a reader found them. clean_mesh() checks indices and coordinates, so
 /// a reader passes on what the file says: an index that does not exist becomes `no_vertex`, and a

@@ -41,9 +41,9 @@ private:
     std::string bytes_;
 };
 
-class Reader {
+class RawMeshReader {
 public:
-    explicit Reader(std::string_view bytes) : bytes_(bytes) {}
+    explicit RawMeshReader(std::string_view bytes) : bytes_(bytes) {}
 
     template <typename T>
     void operator()(T& value) {
@@ -126,7 +126,7 @@ std::string bytes_of(const RawMesh& mesh) {
 
 RawMesh raw_mesh_from(std::string_view bytes) {
     RawMesh mesh;
-    Reader reader(bytes);
+    RawMeshReader reader(bytes);
     transfer(reader, mesh);
     if (!arrays_match(mesh)) throw InputError("its result is damaged");
     return mesh;

@@ -10,13 +10,7 @@
 #include "polygon.hpp"
 
 namespace support {
-namespace {
-
-bool is_finite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-}  // namespace
+namespace {}  // namespace
 
 Mesh triangulate(RawMesh raw) {
     Mesh mesh;
