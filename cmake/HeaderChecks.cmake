@@ -36,6 +36,7 @@ function(cellist_add_header_checks name)
     endforeach()
 
     add_library(${name} OBJECT ${sources})
+    set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
     target_link_libraries(${name} PRIVATE ${arg_TARGET} cellist_warnings)
     target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O0>)
     target_include_directories(${name} SYSTEM PRIVATE ${extra_include_dirs})
