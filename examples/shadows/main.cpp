@@ -44,10 +44,11 @@ bool run(const Options& options) {
     renderer.draw(scene, &times);
     const auto counts = renderer.counts();
     std::printf("%s: frame %.3f ms, %llu rays, %llu blocked, %llu triangles, %llu entries\n",
-                device.info().name.c_str(), least.ms(), (unsigned long long)counts.rays,
-                (unsigned long long)counts.blocked,
-                (unsigned long long)renderer.grid().triangles().size(),
-                (unsigned long long)counts.build.stored);
+                device.info().name.c_str(), least.ms(),
+                static_cast<unsigned long long>(counts.rays),
+                static_cast<unsigned long long>(counts.blocked),
+                static_cast<unsigned long long>(renderer.grid().triangles().size()),
+                static_cast<unsigned long long>(counts.build.stored));
     for (const auto& [pass, ms] : times.all()) std::printf("  %-12s %8.3f ms\n", pass.c_str(), ms);
     support::write_image(options.out, renderer.picture().download(), options.settings.width,
                          options.settings.height);

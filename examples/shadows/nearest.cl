@@ -7,8 +7,9 @@
 static inline void raster_emit(RASTER_TARGET, const View* view,
                                global const RasterInstance* instance, uint piece,
                                const RasterFragment* covered) {
-    const float3 position =
-        fragment_position(placed_meshes[instance->tag], covered, mesh_positions);
-    const ulong key = fragment_key(position, covered, piece, from);
-    atom_min((volatile global ulong*)&keys[covered->y * view->width + covered->x], key);
+    const ulong key =
+        fragment_key(&placed_meshes[instance->tag], covered, mesh_positions, piece, from);
+    // Keys only fall, so a stale one does no harm.
+    volatile global ulong* least = &keys[covered->y * view->width + covered->x];
+    if (key < *least) atom_min(least, key);
 }

@@ -36,7 +36,7 @@ support::Mesh surface(int columns, int rows, bool closed_rows,
     return support::clean_mesh(mesh);
 }
 
-// A cube around the origin with sides of length 1, without some of its faces.
+// A cube around the origin with sides of length 1.
 support::Mesh box() {
     support::Mesh mesh;
     for (int axis = 0; axis < 3; ++axis)
@@ -85,18 +85,30 @@ glm::dmat4 placed(const glm::dvec3& centre, const glm::dvec3& size) {
     return glm::scale(glm::translate(glm::dmat4(1), centre), size);
 }
 
-constexpr double thickness = 0.1;
+// A square around the origin with sides of length 1, in the plane of x and y.
+support::Mesh square() {
+    support::Mesh mesh;
+    mesh.positions = {{-0.5F, -0.5F, 0}, {0.5F, -0.5F, 0}, {0.5F, 0.5F, 0}, {-0.5F, 0.5F, 0}};
+    mesh.normals.assign(4, glm::vec3(0, 0, 1));
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return mesh;
+}
+
 constexpr glm::dvec3 half_room(1.5, 1, 1);
 
 // Floor, ceiling, back and sides; the front is open.
 Scene empty_room() {
     Scene scene;
-    scene.meshes.push_back(box());
+    scene.meshes.push_back(square());
     const auto wall = [&](int axis, double sign, const glm::vec3& albedo) {
-        glm::dvec3 centre(0), size = 2.0 * half_room + 2 * thickness;
-        centre[axis] = sign * (half_room[axis] + thickness / 2);
-        size[axis] = thickness;
-        scene.instances.push_back({.to_world = placed(centre, size), .albedo = albedo});
+        // The columns: two sides of the wall, its normal into the room, and its middle.
+        glm::dmat4 place(0);
+        place[0][(axis + 1) % 3] = 2 * half_room[(axis + 1) % 3];
+        place[1][(axis + 2) % 3] = -2 * sign * half_room[(axis + 2) % 3];
+        place[2][axis] = -sign;
+        place[3][axis] = sign * half_room[axis];
+        place[3][3] = 1;
+        scene.instances.push_back({.to_world = place, .albedo = albedo});
     };
     wall(1, -1, {0.7F, 0.7F, 0.7F});
     wall(1, 1, {0.7F, 0.7F, 0.7F});
@@ -122,9 +134,11 @@ Scene make_room() {
                                .to_world = placed({-0.75, -0.45, -0.35}, glm::dvec3(0.55)),
                                .albedo = {0.8F, 0.8F, 0.8F},
                                .blocks = true});
+    scene.meshes.push_back(box());
     for (int bar = 0; bar < 4; ++bar)
         scene.instances.push_back(
-            {.to_world = placed({0.25, -0.35, -0.8 + 0.4 * bar}, {0.08, 1.3, 0.2}),
+            {.mesh = 2,
+             .to_world = placed({0.25, -0.35, -0.8 + 0.4 * bar}, {0.08, 1.3, 0.2}),
              .albedo = {0.6F, 0.6F, 0.55F},
              .blocks = true});
     return scene;

@@ -6,9 +6,11 @@ static inline void raster_emit(RASTER_TARGET, const View* view,
                                global const RasterInstance* instance, uint piece,
                                const RasterFragment* covered) {
     const int pixel = covered->y * view->width + covered->x;
+    if (fragment_key(&placed_meshes[instance->tag], covered, mesh_positions, piece, from) !=
+        keys[pixel])
+        return;
     const PlacedMesh placed = placed_meshes[instance->tag];
     const float3 position = fragment_position(placed, covered, mesh_positions);
-    if (fragment_key(position, covered, piece, from) != keys[pixel]) return;
     float3 n = 0.0f;
     for (int i = 0; i < 3; ++i) n += covered->weight[i] * vload3(covered->corner[i], mesh_normals);
     n = (float3)(dot(vload3(0, instance->normal_x), n), dot(vload3(0, instance->normal_y), n),
