@@ -28,11 +28,4 @@
 #define GRID_COLUMNS_PER_PART 64u
 #define GRID_PARTS_MAX 256u
 
-// Counters of many segments, from 0.
-#define GRID_COUNTER_NEXT 0      // segments that were begun, or more
-#define GRID_COUNTER_INVALID 1   // segments with an end that is not finite
-#define GRID_COUNTER_SEARCHES 2  // segments whose whole search has to be exact
-#define GRID_COUNTER_TESTS 3     // tests that have to be exact, or more
-#define GRID_COUNTERS 4
-
 #endif

@@ -1,6 +1,6 @@
-// Many segments at once. Two kernels: the first decides nearly all tests in float, and leaves the
-// rest to the second, which decides exactly. Exact tests in the first kernel would cost it 40 % of
-// its speed on an H200, for a three-hundredth of the segments: they take too many registers.
+// Many segments at once. Two kernels: the first decides nearly all segments in float, and leaves
+// the rest to the second, which decides exactly. Exact tests in the first kernel would cost it 40 %
+// of its speed on an H200, for a three-hundredth of the segments: they take too many registers.
 //
 // In the first kernel, a work-item takes the next segment when it has finished one, so that the
 // work-items of a warp stay busy: 1.6 to 2 times as fast as one segment a work-item (Aila, Laine:
@@ -9,8 +9,7 @@
 // segments    ends: x, y, z, and one unused
 // any         1 where the segment meets a triangle, 0 elsewhere
 // closest     the closest triangle of each segment, see grid_closest_hit
-// searches    numbers of segments whose whole search the second kernel does
-// tests       segments and triangles that it tests: their segments meet nothing else
+// undecided   numbers of segments for the second kernel
 
 static GridHit grid_hit(GRID_SCENE(scene), const GridRay* ray) {
     GridHit hit = {ray->triangle, ray->at, 0.0f, 0.0f};
@@ -27,9 +26,8 @@ static GridHit grid_hit(GRID_SCENE(scene), const GridRay* ray) {
 
 static void grid_trace_quickly(GRID_SCENE(scene), global const float4* segments, uint count,
                                global uint* any, global GridHit* closest,
-                               volatile global uint* counters, global uint* searches,
-                               global uint2* tests, uint room, const int is_closest) {
-    GridUndecided undecided = {0, counters, tests, room, 0};
+                               volatile global GridRayCounters* counters, global uint* undecided,
+                               const int is_closest) {
     const int bricks = grid_brick_count(scene_cells);
     GridRay ray;
     uint i = CELLIST_NONE;
@@ -39,18 +37,17 @@ static void grid_trace_quickly(GRID_SCENE(scene), global const float4* segments,
     for (;;) {
         int is_done = 0;
         if (i == CELLIST_NONE) {
-            i = atomic_inc(counters + GRID_COUNTER_NEXT);
+            i = atomic_inc(&counters->next);
             if (i >= count) return;
             leave = 0;
-            undecided.segment = i;
             const int begins =
                 grid_ray_begin(&ray, scene_cells, segments[2 * i].xyz, segments[2 * i + 1].xyz, 0);
-            if (begins == GRID_INVALID) atomic_inc(counters + GRID_COUNTER_INVALID);
+            if (begins == GRID_INVALID) atomic_inc(&counters->invalid);
             if (begins == GRID_FAR) {
                 ray.undecided = 1;
                 is_done = 1;
             } else if (begins != GRID_INVALID) {
-                is_done = grid_ray_visit_outside(GRID_PASS(scene), &ray, is_closest, undecided);
+                is_done = grid_ray_visit_outside(GRID_PASS(scene), &ray, is_closest, 0);
             }
             if (begins != GRID_BEGINS) is_done = 1;
             if (is_closest && begins == GRID_BEGINS) {
@@ -66,13 +63,13 @@ static void grid_trace_quickly(GRID_SCENE(scene), global const float4* segments,
                 if (is_closest) grid_ray_finish(&ray, outside, outside_at);
                 is_done = 1;
             } else {
-                is_done = grid_ray_visit(GRID_PASS(scene), &ray, cell, is_closest, undecided);
+                is_done = grid_ray_visit(GRID_PASS(scene), &ray, cell, is_closest, 0);
             }
         }
         if (!is_done) continue;
         const int is_hit = ray.triangle != GRID_NO_TRIANGLE;
         if (ray.undecided && (is_closest || !is_hit))
-            searches[atomic_inc(counters + GRID_COUNTER_SEARCHES)] = i;
+            undecided[atomic_inc(&counters->undecided)] = i;
         else if (is_closest)
             closest[i] = grid_hit(GRID_PASS(scene), &ray);
         else
@@ -82,10 +79,10 @@ static void grid_trace_quickly(GRID_SCENE(scene), global const float4* segments,
 }
 
 static void grid_trace_exactly(GRID_SCENE(scene), global const float4* segments, global uint* any,
-                               global GridHit* closest, global const uint* counters,
-                               global const uint* searches, const int is_closest) {
-    for (uint n = get_global_id(0); n < counters[GRID_COUNTER_SEARCHES]; n += get_global_size(0)) {
-        const uint i = searches[n];
+                               global GridHit* closest, global const GridRayCounters* counters,
+                               global const uint* undecided, const int is_closest) {
+    for (uint n = get_global_id(0); n < counters->undecided; n += get_global_size(0)) {
+        const uint i = undecided[n];
         GridRay ray;
         const int is_hit = grid_ray_trace(GRID_PASS(scene), &ray, segments[2 * i].xyz,
                                           segments[2 * i + 1].xyz, is_closest);
@@ -97,32 +94,23 @@ static void grid_trace_exactly(GRID_SCENE(scene), global const float4* segments,
 }
 
 kernel void grid_any_hits(GRID_SCENE(scene), global const float4* segments, uint count,
-                          global uint* any, volatile global uint* counters, global uint* searches,
-                          global uint2* tests, uint room) {
-    grid_trace_quickly(GRID_PASS(scene), segments, count, any, 0, counters, searches, tests, room,
-                       0);
+                          global uint* any, volatile global GridRayCounters* counters,
+                          global uint* undecided) {
+    grid_trace_quickly(GRID_PASS(scene), segments, count, any, 0, counters, undecided, 0);
 }
 kernel void grid_any_hits_exactly(GRID_SCENE(scene), global const float4* segments,
-                                  global uint* any, global const uint* counters,
-                                  global const uint* searches, global const uint2* tests,
-                                  uint room) {
-    const uint count = min(counters[GRID_COUNTER_TESTS], room);
-    for (uint n = get_global_id(0); n < count; n += get_global_size(0)) {
-        const uint i = tests[n].x;
-        const GridTriangle t = scene_triangles[tests[n].y];
-        if (grid_segment_meets(segments[2 * i].xyz, segments[2 * i + 1].xyz, cellist_float3(t.a),
-                               cellist_float3(t.b), cellist_float3(t.c)))
-            any[i] = 1;
-    }
-    grid_trace_exactly(GRID_PASS(scene), segments, any, 0, counters, searches, 0);
+                                  global uint* any, global const GridRayCounters* counters,
+                                  global const uint* undecided) {
+    grid_trace_exactly(GRID_PASS(scene), segments, any, 0, counters, undecided, 0);
 }
 kernel void grid_closest_hits(GRID_SCENE(scene), global const float4* segments, uint count,
-                              global GridHit* closest, volatile global uint* counters,
-                              global uint* searches) {
-    grid_trace_quickly(GRID_PASS(scene), segments, count, 0, closest, counters, searches, 0, 0, 1);
+                              global GridHit* closest, volatile global GridRayCounters* counters,
+                              global uint* undecided) {
+    grid_trace_quickly(GRID_PASS(scene), segments, count, 0, closest, counters, undecided, 1);
 }
 kernel void grid_closest_hits_exactly(GRID_SCENE(scene), global const float4* segments,
-                                      global GridHit* closest, global const uint* counters,
-                                      global const uint* searches) {
-    grid_trace_exactly(GRID_PASS(scene), segments, 0, closest, counters, searches, 1);
+                                      global GridHit* closest,
+                                      global const GridRayCounters* counters,
+                                      global const uint* undecided) {
+    grid_trace_exactly(GRID_PASS(scene), segments, 0, closest, counters, undecided, 1);
 }

@@ -8,9 +8,6 @@
 namespace grid {
 namespace {
 
-/// Tests that the second kernel does. Where there are more, it does whole searches.
-constexpr std::size_t tests_max = std::size_t{1} << 18;
-
 cellist::Kernel kernel(const cellist::Device& device, const TriangleGrid& triangles,
                        const char* name) {
     return {device,
@@ -19,7 +16,8 @@ cellist::Kernel kernel(const cellist::Device& device, const TriangleGrid& triang
             triangles.entries(),
             cellist::type<GridCells>,
             cellist::type<GridTriangle>,
-            cellist::type<GridHit>};
+            cellist::type<GridHit>,
+            cellist::type<GridRayCounters>};
 }
 
 /// As many work-items as a device runs at once: each takes segments until there are none left.
@@ -36,40 +34,37 @@ Rays::Rays(const cellist::Device& device, const TriangleGrid& triangles)
     : device_(device),
       triangles_(triangles),
       range_(whole_device(device.info())),
-      counters_(device, GRID_COUNTERS),
-      searches_(device, 0),
-      tests_(device, tests_max),
+      counters_(device, 1),
+      undecided_(device, 0),
       any_(kernel(device, triangles, "grid_any_hits")),
       any_exactly_(kernel(device, triangles, "grid_any_hits_exactly")),
       closest_(kernel(device, triangles, "grid_closest_hits")),
       closest_exactly_(kernel(device, triangles, "grid_closest_hits_exactly")) {}
 
-void Rays::begin(const cellist::Buffer<GridSegment>& segments, std::size_t count,
-                 std::size_t results) {
-    for (const std::size_t size : {segments.size(), results})
+template <class Result>
+void Rays::trace(cellist::Kernel& quickly, cellist::Kernel& exactly,
+                 const cellist::Buffer<GridSegment>& segments, std::size_t count,
+                 cellist::Buffer<Result>& results) {
+    for (const std::size_t size : {segments.size(), results.size()})
         if (size < count)
             throw cellist::Error("a buffer of " + std::to_string(size) +
                                  " elements is too short for " + std::to_string(count) +
                                  " segments");
-    if (searches_.size() < count) searches_ = cellist::Buffer<cl_uint>(device_, count);
-    counters_.fill(0);
+    if (undecided_.size() < count) undecided_ = cellist::Buffer<cl_uint>(device_, count);
+    counters_.fill({});
+    triangles_.run(quickly, range_, segments.cl(), static_cast<cl_uint>(count), results, counters_,
+                   undecided_);
+    triangles_.run(exactly, range_, segments.cl(), results, counters_, undecided_);
 }
 
 void Rays::any_hits(const cellist::Buffer<GridSegment>& segments, std::size_t count,
                     cellist::Buffer<cl_uint>& any) {
-    begin(segments, count, any.size());
-    const auto room = static_cast<cl_uint>(tests_.size());
-    triangles_.run(any_, range_, segments.cl(), static_cast<cl_uint>(count), any, counters_,
-                   searches_, tests_, room);
-    triangles_.run(any_exactly_, range_, segments.cl(), any, counters_, searches_, tests_, room);
+    trace(any_, any_exactly_, segments, count, any);
 }
 
 void Rays::closest_hits(const cellist::Buffer<GridSegment>& segments, std::size_t count,
                         cellist::Buffer<GridHit>& closest) {
-    begin(segments, count, closest.size());
-    triangles_.run(closest_, range_, segments.cl(), static_cast<cl_uint>(count), closest, counters_,
-                   searches_);
-    triangles_.run(closest_exactly_, range_, segments.cl(), closest, counters_, searches_);
+    trace(closest_, closest_exactly_, segments, count, closest);
 }
 
 }  // namespace grid

@@ -23,6 +23,13 @@ struct GridHit {
 };
 CELLIST_STRUCT(GridHit, triangle, at, u, v);
 
+struct GridRayCounters {
+    cl_uint next;       ///< segment
+    cl_uint undecided;  ///< segments that float cannot decide
+    cl_uint invalid;    ///< segments with an end that is not finite
+};
+CELLIST_STRUCT(GridRayCounters, next, undecided, invalid);
+
 /// Traces many segments through a grid. Answers are those of testing every triangle exactly:
 /// segments do not pass between triangles that share an edge or a corner. A segment meets a
 /// triangle that it touches. It does not meet one in whose plane it lies, nor one without area. A
@@ -42,24 +49,23 @@ public:
                       cellist::Buffer<GridHit>& closest);
 
     /// Segments of the last call with an end that is not finite; they meet nothing. Blocks.
-    [[nodiscard]] std::uint32_t invalid() const {
-        return counters_.download()[GRID_COUNTER_INVALID];
-    }
+    [[nodiscard]] std::uint32_t invalid() const { return counters_.download()[0].invalid; }
 
     [[nodiscard]] std::uint64_t device_bytes() const {
-        return searches_.size() * sizeof(cl_uint) + tests_.size() * sizeof(cl_uint2);
+        return counters_.size() * sizeof(GridRayCounters) + undecided_.size() * sizeof(cl_uint);
     }
 
 private:
-    void begin(const cellist::Buffer<GridSegment>& segments, std::size_t count,
-               std::size_t results);
+    template <class Result>
+    void trace(cellist::Kernel& quickly, cellist::Kernel& exactly,
+               const cellist::Buffer<GridSegment>& segments, std::size_t count,
+               cellist::Buffer<Result>& results);
 
     const cellist::Device& device_;
     const TriangleGrid& triangles_;
     cellist::Range range_;
-    cellist::Buffer<cl_uint> counters_;
-    cellist::Buffer<cl_uint> searches_;
-    cellist::Buffer<cl_uint2> tests_;
+    cellist::Buffer<GridRayCounters> counters_;
+    cellist::Buffer<cl_uint> undecided_;
     cellist::Kernel any_;
     cellist::Kernel any_exactly_;
     cellist::Kernel closest_;
