@@ -92,7 +92,7 @@ int side(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const gl
         volume += x[i] * (left - right);
         size += std::abs(x[i]) * (std::abs(left) + std::abs(right));
     }
-    if (std::abs(volume) <= 0x1p-50 * size) return exact_side(a, b, c, d);
+    if (std::abs(volume) <= 0x1p-49 * size) return exact_side(a, b, c, d);
     return volume > 0 ? 1 : -1;
 }
 

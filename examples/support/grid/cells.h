@@ -16,9 +16,18 @@
 // How far a segment may leave the grid and still count as inside, in cells.
 #define GRID_CLIP_ERROR 0x1p-9f
 
-// Triangles are in the list of every cell that they come closer to than this, in cells. Clipping
-// moves a segment by up to 2^-9, and the roundings of the walk by less than 2^-10.
+// A triangle may reach this far out of the grid, in cells, without being in the list of those that
+// do. Smaller than GRID_CLIP_ERROR, so that clipping cannot lose a place on it.
+#define GRID_OUTSIDE_ERROR 0x1p-10f
+
+// Triangles are in the list of every cell that they come closer to than this along every axis, in
+// cells. Clipping moves a segment by up to 2^-9 + 2^-12, its roundings before that by less than
+// 2^-10, and those of the walk by less than 2^-10.
 #define GRID_MARGIN 0x1p-8f
+
+// Corners beyond this, in units of the grid, are left to exact tests. Closer ones cannot overflow
+// in a test in float.
+#define GRID_CORNER_MAX 0x1p16f
 
 // Segments whose ends are at most as far from the corner of the grid, in cells, are clipped in
 // float.

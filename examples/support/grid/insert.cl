@@ -23,11 +23,27 @@ typedef struct {
     int is_row;  // at most one cell wide in two axes: every cell overlaps
 } GridOverlap;
 
-static GridEdge grid_edge(float2 a, float2 b, float facing, float margin) {
+#ifdef cl_khr_fp64
+#define GRID_REAL2 double2
+#define GRID_ROUNDING 0x1p-49
+#else
+#define GRID_REAL2 float2
+#define GRID_ROUNDING 0x1p-20f
+#endif
+
+// The line through a and b. The third corner tells which side is outside: the sign of the area
+// would be wrong for needles.
+static GridEdge grid_edge(GRID_REAL2 a, GRID_REAL2 b, GRID_REAL2 third, GRID_REAL margin) {
+    GRID_REAL2 n = (GRID_REAL2)(a.y - b.y, b.x - a.x);
+    if (dot(n, third - a) < 0) n = -n;
+    const GRID_REAL size = fabs(n.x) + fabs(n.y);
+    const GRID_REAL offset =
+        fmax(n.x, (GRID_REAL)0) + fmax(n.y, (GRID_REAL)0) - dot(n, a) + size * margin;
+    // The size may leave the range of floats; the cell then counts as inside.
+    const float scale = 1.0f / (float)size;
     GridEdge edge;
-    edge.n = (float2)(a.y - b.y, b.x - a.x) * (facing < 0.0f ? -1.0f : 1.0f);
-    edge.offset = fmax(edge.n.x, 0.0f) + fmax(edge.n.y, 0.0f) - dot(edge.n, a) +
-                  (fabs(edge.n.x) + fabs(edge.n.y)) * margin;
+    edge.n = (float2)((float)(n.x * scale), (float)(n.y * scale));
+    edge.offset = (float)(offset * scale);
     return edge;
 }
 
@@ -37,14 +53,17 @@ static int grid_is_beyond(GridEdge edge, float p, float q) {
 
 // False where the triangle does not come near the grid. `reaches_out` tells whether it reaches out
 // of the grid.
+//
+// What is the same for all cells is computed in double, because corners may be far away. Each test
+// of a cell is in float, whose rounding takes less than an eighth of GRID_MARGIN.
 static int grid_overlap_begin(GridOverlap* t, const GridCells cells, float3 a, float3 b, float3 c,
                               int* reaches_out) {
-    a = grid_in_cells(cells, a);
-    b = grid_in_cells(cells, b);
-    c = grid_in_cells(cells, c);
+    const float3 in_cells[3] = {grid_in_cells(cells, a), grid_in_cells(cells, b),
+                                grid_in_cells(cells, c)};
     const float3 extent = convert_float3(grid_extent(cells));
-    const float3 low = fmin(a, fmin(b, c)), high = fmax(a, fmax(b, c));
-    *reaches_out = !all(low >= -GRID_CLIP_ERROR && high <= extent + GRID_CLIP_ERROR);
+    const float3 low = fmin(in_cells[0], fmin(in_cells[1], in_cells[2]));
+    const float3 high = fmax(in_cells[0], fmax(in_cells[1], in_cells[2]));
+    *reaches_out = !all(low >= -GRID_OUTSIDE_ERROR && high <= extent + GRID_OUTSIDE_ERROR);
     if (!all(high >= -GRID_MARGIN && low <= extent + GRID_MARGIN)) return 0;
     t->low = convert_int3(fmax(low - GRID_MARGIN, 0.0f));
     t->low = min(t->low, convert_int3(extent) - 1);
@@ -52,29 +71,35 @@ static int grid_overlap_begin(GridOverlap* t, const GridCells cells, float3 a, f
     t->is_row = (t->last.x == 0) + (t->last.y == 0) + (t->last.z == 0) >= 2;
     if (t->is_row) return 1;
 
-    const float3 corner = convert_float3(t->low);
-    a -= corner;
-    b -= corner;
-    c -= corner;
-    const float3 ab = b - a, ac = c - a;
-    t->n = cross(ab, ac);
-    // Coordinates up to `reach` are rounded, and so are products of them.
-    const float3 far = fmax(fabs(low - corner), fabs(high - corner));
-    const float reach = fmax(far.x, fmax(far.y, far.z)) + 1.0f;
-    const float margin = 1.5f * GRID_MARGIN + reach * 0x1p-20f;
-    const float3 ab_size = fabs(ab), ac_size = fabs(ac);
-    const float slack = (fabs(t->n.x) + fabs(t->n.y) + fabs(t->n.z)) * margin +
-                        (ab_size.x + ab_size.y + ab_size.z) * (ac_size.x + ac_size.y + ac_size.z) *
-                            reach * 0x1p-20f;
-    const float distance = -dot(t->n, a);
-    t->under = distance + fmin(t->n.x, 0.0f) + fmin(t->n.y, 0.0f) + fmin(t->n.z, 0.0f) - slack;
-    t->above = distance + fmax(t->n.x, 0.0f) + fmax(t->n.y, 0.0f) + fmax(t->n.z, 0.0f) + slack;
-    const float3 corners[4] = {a, b, c, a};
+    const GRID_REAL3 shift =
+        grid_in_units(cells, (float3)(cells.origin[0], cells.origin[1], cells.origin[2]));
+    const GRID_REAL3 corner = GRID_TO_REAL3(convert_float3(t->low));
+    const GRID_REAL scale = cells.cells_per_unit;
+    const GRID_REAL3 p = (grid_in_units(cells, a) - shift) * scale - corner;
+    const GRID_REAL3 q = (grid_in_units(cells, b) - shift) * scale - corner;
+    const GRID_REAL3 r = (grid_in_units(cells, c) - shift) * scale - corner;
+    const GRID_REAL3 pq = q - p, pr = r - p;
+    const GRID_REAL3 n = cross(pq, pr);
+    const GRID_REAL3 far = fmax(fabs(p), fmax(fabs(q), fabs(r)));
+    const GRID_REAL reach = fmax(far.x, fmax(far.y, far.z)) + 1;
+    const GRID_REAL margin = 1.25f * GRID_MARGIN + reach * GRID_ROUNDING;
+    const GRID_REAL3 pq_size = fabs(pq), pr_size = fabs(pr);
+    const GRID_REAL n_size = fabs(n.x) + fabs(n.y) + fabs(n.z);
+    const GRID_REAL slack = n_size * margin + (pq_size.x + pq_size.y + pq_size.z) *
+                                                  (pr_size.x + pr_size.y + pr_size.z) * reach *
+                                                  GRID_ROUNDING;
+    const GRID_REAL distance = -dot(n, p);
+    const GRID_REAL3 least = fmin(n, (GRID_REAL3)(0)), most = fmax(n, (GRID_REAL3)(0));
+    const float n_scale = 1.0f / (float)n_size;
+    t->n = (float3)((float)(n.x * n_scale), (float)(n.y * n_scale), (float)(n.z * n_scale));
+    t->under = (float)((distance + least.x + least.y + least.z - slack) * n_scale);
+    t->above = (float)((distance + most.x + most.y + most.z + slack) * n_scale);
+    const GRID_REAL3 corners[5] = {p, q, r, p, q};
     for (int i = 0; i < 3; ++i) {
-        const float3 p = corners[i], q = corners[i + 1];
-        t->xy[i] = grid_edge(p.xy, q.xy, t->n.z, margin);
-        t->yz[i] = grid_edge(p.yz, q.yz, t->n.x, margin);
-        t->zx[i] = grid_edge(p.zx, q.zx, t->n.y, margin);
+        const GRID_REAL3 begin = corners[i], end = corners[i + 1], third = corners[i + 2];
+        t->xy[i] = grid_edge(begin.xy, end.xy, third.xy, margin);
+        t->yz[i] = grid_edge(begin.yz, end.yz, third.yz, margin);
+        t->zx[i] = grid_edge(begin.zx, end.zx, third.zx, margin);
     }
     return 1;
 }
@@ -123,7 +148,7 @@ static void grid_insert_columns(CELLIST_LISTS(GridEntry, entries), const GridCel
 // One work-item a triangle. Where a triangle may touch many columns of cells, it goes to `parts`
 // instead; if that is full, there is enough to do for every work-item as it is.
 //
-// corners      three a triangle, in units of the grid
+// corners      three a triangle, in units of the grid; NaN beyond GRID_CORNER_MAX
 // part_count   0 before; may exceed `part_room` afterwards
 kernel void grid_insert(CELLIST_LISTS(GridEntry, entries), const GridCells cells,
                         global const GridTriangle* triangles, uint count, global float4* corners,
@@ -133,9 +158,11 @@ kernel void grid_insert(CELLIST_LISTS(GridEntry, entries), const GridCells cells
     const float3 a = cellist_float3(triangles[i].a);
     const float3 b = cellist_float3(triangles[i].b);
     const float3 c = cellist_float3(triangles[i].c);
-    corners[3 * i] = (float4)(a * cells.unit, 0.0f);
-    corners[3 * i + 1] = (float4)(b * cells.unit, 0.0f);
-    corners[3 * i + 2] = (float4)(c * cells.unit, 0.0f);
+    const float3 points[3] = {a * cells.unit, b * cells.unit, c * cells.unit};
+    for (int k = 0; k < 3; ++k) {
+        const int is_close = all(fabs(points[k]) <= GRID_CORNER_MAX);
+        corners[3 * i + k] = (float4)(is_close ? points[k] : (float3)(NAN), 0.0f);
+    }
     const GridEntry entry = {i};
     if (!all(isfinite(a)) || !all(isfinite(b)) || !all(isfinite(c))) {
         cellist_insert(entries, CELLIST_NONE, entry);

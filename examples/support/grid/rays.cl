@@ -1,6 +1,7 @@
 // Many segments at once. Two kernels: the first decides nearly all segments in float, and leaves
 // the rest to the second, which decides exactly. Exact tests in the first kernel would cost it 40 %
-// of its speed on an H200, for a three-hundredth of the segments: they take too many registers.
+// of its speed on an H200, for a three-hundredth of the segments: they take too many registers. A
+// third kernel measures where the closest triangles are met.
 //
 // In the first kernel, a work-item takes the next segment when it has finished one, so that the
 // work-items of a warp stay busy: 1.6 to 2 times as fast as one segment a work-item (Aila, Laine:
@@ -8,21 +9,8 @@
 //
 // segments    ends: x, y, z, and one unused
 // any         1 where the segment meets a triangle, 0 elsewhere
-// closest     the closest triangle of each segment, see grid_closest_hit
+// closest     the closest triangle of each segment, and then where; see grid_closest_hit
 // undecided   numbers of segments for the second kernel
-
-static GridHit grid_hit(GRID_SCENE(scene), const GridRay* ray) {
-    GridHit hit = {ray->triangle, ray->at, 0.0f, 0.0f};
-    if (ray->triangle == GRID_NO_TRIANGLE) return hit;
-    const GridTriangle triangle = scene_triangles[ray->triangle];
-    const float3 a = grid_in_cells(scene_cells, cellist_float3(triangle.a));
-    const float3 b = grid_in_cells(scene_cells, cellist_float3(triangle.b));
-    const float3 c = grid_in_cells(scene_cells, cellist_float3(triangle.c));
-    const float2 weights = grid_barycentrics(ray->begin, ray->end - ray->begin, a, b, c);
-    hit.u = weights.x;
-    hit.v = weights.y;
-    return hit;
-}
 
 static void grid_trace_quickly(GRID_SCENE(scene), global const float4* segments, uint count,
                                global uint* any, global GridHit* closest,
@@ -32,8 +20,6 @@ static void grid_trace_quickly(GRID_SCENE(scene), global const float4* segments,
     GridRay ray;
     uint i = CELLIST_NONE;
     int leave = 0;
-    uint outside = GRID_NO_TRIANGLE;
-    float outside_at = INFINITY;
     for (;;) {
         int is_done = 0;
         if (i == CELLIST_NONE) {
@@ -50,28 +36,21 @@ static void grid_trace_quickly(GRID_SCENE(scene), global const float4* segments,
                 is_done = grid_ray_visit_outside(GRID_PASS(scene), &ray, is_closest, 0);
             }
             if (begins != GRID_BEGINS) is_done = 1;
-            if (is_closest && begins == GRID_BEGINS) {
-                outside = ray.triangle;
-                outside_at = ray.at;
-                grid_ray_enter(&ray, scene_cells);
-            }
         }
         if (!is_done) {
             const uint cell = grid_walk_find(&ray.walk, scene_occupancy, bricks, leave);
             leave = 1;
-            if (cell == GRID_NO_CELL || (is_closest && ray.at < ray.walk.position)) {
-                if (is_closest) grid_ray_finish(&ray, outside, outside_at);
+            if (cell == GRID_NO_CELL || (is_closest && grid_ray_is_beyond(&ray)))
                 is_done = 1;
-            } else {
+            else
                 is_done = grid_ray_visit(GRID_PASS(scene), &ray, cell, is_closest, 0);
-            }
         }
         if (!is_done) continue;
         const int is_hit = ray.triangle != GRID_NO_TRIANGLE;
         if (ray.undecided && (is_closest || !is_hit))
             undecided[atomic_inc(&counters->undecided)] = i;
         else if (is_closest)
-            closest[i] = grid_hit(GRID_PASS(scene), &ray);
+            closest[i].triangle = ray.triangle;
         else
             any[i] = (uint)is_hit;
         i = CELLIST_NONE;
@@ -87,7 +66,7 @@ static void grid_trace_exactly(GRID_SCENE(scene), global const float4* segments,
         const int is_hit = grid_ray_trace(GRID_PASS(scene), &ray, segments[2 * i].xyz,
                                           segments[2 * i + 1].xyz, is_closest);
         if (is_closest)
-            closest[i] = grid_hit(GRID_PASS(scene), &ray);
+            closest[i].triangle = ray.triangle;
         else
             any[i] = (uint)is_hit;
     }
@@ -113,4 +92,22 @@ kernel void grid_closest_hits_exactly(GRID_SCENE(scene), global const float4* se
                                       global const GridRayCounters* counters,
                                       global const uint* undecided) {
     grid_trace_exactly(GRID_PASS(scene), segments, 0, closest, counters, undecided, 1);
+}
+
+// Adds the distances and weights of the triangles, in double. One work-item a segment.
+kernel void grid_measure_hits(GRID_SCENE(scene), global const float4* segments, uint count,
+                              global GridHit* closest) {
+    const uint i = get_global_id(0);
+    if (i >= count) return;
+    GridHit hit = {closest[i].triangle, INFINITY, 0.0f, 0.0f};
+    if (hit.triangle != GRID_NO_TRIANGLE) {
+        GridRay ray;
+        grid_ray_begin(&ray, scene_cells, segments[2 * i].xyz, segments[2 * i + 1].xyz, 1);
+        const GRID_REAL3 meeting =
+            grid_ray_meeting(&ray, scene_cells, scene_triangles[hit.triangle]);
+        hit.at = grid_ray_part(&ray, meeting.x);
+        hit.u = clamp((float)meeting.y, 0.0f, 1.0f);
+        hit.v = clamp((float)meeting.z, 0.0f, 1.0f - hit.u);
+    }
+    closest[i] = hit;
 }

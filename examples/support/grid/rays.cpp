@@ -20,6 +20,9 @@ cellist::Kernel kernel(const cellist::Device& device, const TriangleGrid& triang
             cellist::type<GridRayCounters>};
 }
 
+/// Kernels number the ends of segments in 32 bits.
+constexpr std::size_t segments_max = 0x7FFFFFFF;
+
 /// As many work-items as a device runs at once: each takes segments until there are none left.
 cellist::Range whole_device(const cellist::DeviceInfo& device) {
     const std::size_t group = device.one_thread_per_work_group ? 1 : 64;
@@ -39,7 +42,8 @@ Rays::Rays(const cellist::Device& device, const TriangleGrid& triangles)
       any_(kernel(device, triangles, "grid_any_hits")),
       any_exactly_(kernel(device, triangles, "grid_any_hits_exactly")),
       closest_(kernel(device, triangles, "grid_closest_hits")),
-      closest_exactly_(kernel(device, triangles, "grid_closest_hits_exactly")) {}
+      closest_exactly_(kernel(device, triangles, "grid_closest_hits_exactly")),
+      measure_(kernel(device, triangles, "grid_measure_hits")) {}
 
 template <class Result>
 void Rays::trace(cellist::Kernel& quickly, cellist::Kernel& exactly,
@@ -50,6 +54,9 @@ void Rays::trace(cellist::Kernel& quickly, cellist::Kernel& exactly,
             throw cellist::Error("a buffer of " + std::to_string(size) +
                                  " elements is too short for " + std::to_string(count) +
                                  " segments");
+    if (count > segments_max)
+        throw cellist::Error(std::to_string(count) + " segments: trace at most " +
+                             std::to_string(segments_max) + " at once");
     if (undecided_.size() < count) undecided_ = cellist::Buffer<cl_uint>(device_, count);
     counters_.fill({});
     triangles_.run(quickly, range_, segments.cl(), static_cast<cl_uint>(count), results, counters_,
@@ -65,6 +72,8 @@ void Rays::any_hits(const cellist::Buffer<GridSegment>& segments, std::size_t co
 void Rays::closest_hits(const cellist::Buffer<GridSegment>& segments, std::size_t count,
                         cellist::Buffer<GridHit>& closest) {
     trace(closest_, closest_exactly_, segments, count, closest);
+    triangles_.run(measure_, cellist::Range::padded(count, 64), segments.cl(),
+                   static_cast<cl_uint>(count), closest);
 }
 
 }  // namespace grid

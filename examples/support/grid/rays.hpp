@@ -40,11 +40,12 @@ public:
     Rays(const cellist::Device& device, const TriangleGrid& triangles);
 
     /// Writes to `any` whether each of the first `count` segments meets a triangle: 1 or 0. Throws
-    /// Error if a buffer is too short. Does not block.
+    /// Error if a buffer is too short or `count` exceeds 2^31 - 1. Does not block.
     void any_hits(const cellist::Buffer<GridSegment>& segments, std::size_t count,
                   cellist::Buffer<cl_uint>& any);
-    /// Writes what each segment meets first; among triangles at the same distance, the one with the
-    /// lowest number. Otherwise as any_hits().
+    /// Writes what each segment meets first. Triangles are compared by distances that are off by at
+    /// most 2^-12 of the segment where it nearly touches their planes, and by a few roundings
+    /// elsewhere; among equal ones, the lowest number is first. Otherwise as any_hits().
     void closest_hits(const cellist::Buffer<GridSegment>& segments, std::size_t count,
                       cellist::Buffer<GridHit>& closest);
 
@@ -70,6 +71,7 @@ private:
     cellist::Kernel any_exactly_;
     cellist::Kernel closest_;
     cellist::Kernel closest_exactly_;
+    cellist::Kernel measure_;
 };
 
 }  // namespace grid

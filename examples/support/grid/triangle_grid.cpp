@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include <glm/common.hpp>
@@ -16,6 +17,9 @@ namespace {
 /// At most as many triangles at each end of an axis may lie outside of the grid.
 constexpr std::size_t outliers_max = 32;
 
+/// Kernels number corners in 32 bits.
+constexpr std::size_t triangles_max = 0xFFFFFFFF / 3;
+
 /// Large triangles are shared out while there is room for these parts.
 constexpr std::size_t parts_max = 65536;
 
@@ -24,6 +28,13 @@ bool is_finite(const GridTriangle& triangle) {
         for (int k = 0; k < 3; ++k)
             if (!std::isfinite(corner[k])) return false;
     return true;
+}
+
+std::span<const GridTriangle> numbered(std::span<const GridTriangle> triangles) {
+    if (triangles.size() > triangles_max)
+        throw cellist::Error("a grid of " + std::to_string(triangles.size()) +
+                             " triangles: expected at most " + std::to_string(triangles_max));
+    return triangles;
 }
 
 /// How many cubes of 2^bits cells along each axis the grid has.
@@ -105,14 +116,21 @@ GridCells cells_in_box(const glm::dvec3& low, const glm::dvec3& high, int longes
         throw support::InputError("a grid of " + std::to_string(longest) +
                                   " cells: expected 1 to " + std::to_string(GRID_EXTENT_MAX));
     const glm::dvec3 size = high - low;
+    constexpr double largest = std::numeric_limits<float>::max();
+    for (int k = 0; k < 3; ++k)
+        if (!(low[k] <= high[k] && low[k] >= -largest && high[k] <= largest))
+            throw support::InputError("the box of a grid reaches from " + std::to_string(low[k]) +
+                                      " to " + std::to_string(high[k]) +
+                                      ": expected finite ends in rising order");
     if (longest == 0) longest = suitable_longest(size, triangles);
     const double side = std::max({size.x, size.y, size.z});
     const glm::dvec3 farthest = glm::max(glm::abs(low), glm::abs(high));
-    // Scales coordinates to 1 or less, except those beyond 2^100.
+    // Scales coordinates to 1 or less, except those beyond 2^126.
     const double reach = std::max({farthest.x, farthest.y, farthest.z});
-    const int exponent = reach > 0 ? std::clamp(std::ilogb(reach) + 1, -100, 100) : 0;
-    // A single point still has a cell around it.
-    const double cell = side > 0 ? side / longest : std::max(reach, std::ldexp(1.0, exponent));
+    const int exponent = reach > 0 ? std::clamp(std::ilogb(reach) + 1, -126, 126) : 0;
+    // A single point still has a cell around it, and its inverse is a float.
+    const double cell = side > 0 ? std::max(side / longest, std::ldexp(1.0, exponent - 100))
+                                 : std::max(reach, std::ldexp(1.0, exponent));
 
     GridCells cells{};
     cells.unit = static_cast<cl_float>(std::ldexp(1.0, -exponent));
@@ -132,7 +150,7 @@ TriangleGrid::TriangleGrid(const cellist::Device& device, std::span<const GridTr
                            const GridCells& cells, cellist::Storage storage)
     : cells_(cells),
       bricks_(cubes_of(cells, GRID_BRICK_BITS)),
-      triangles_(device, triangles),
+      triangles_(device, numbered(triangles)),
       corners_(device, 3 * triangles.size()),
       occupancy_(device, bricks_ + bricks_ / sizeof(cl_ulong) + 1),
       parts_groups_(std::size_t{device.info().compute_units} * 16),
@@ -142,7 +160,9 @@ TriangleGrid::TriangleGrid(const cellist::Device& device, std::span<const GridTr
       insert_(kernel(device, "grid_insert")),
       insert_parts_(kernel(device, "grid_insert_parts")),
       find_occupied_(kernel(device, "grid_find_occupied")),
-      find_empty_(kernel(device, "grid_find_empty")) {}
+      find_empty_(kernel(device, "grid_find_empty")) {
+    occupancy_.fill(0);
+}
 
 cellist::Kernel TriangleGrid::kernel(const cellist::Device& device, const char* name) const {
     return {device,

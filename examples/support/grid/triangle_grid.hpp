@@ -48,7 +48,8 @@ CELLIST_STRUCT(GridPart, triangle, part, parts);
 /// as long without them. Throws InputError unless 0 <= longest <= GRID_EXTENT_MAX.
 [[nodiscard]] GridCells cells_around(std::span<const GridTriangle> triangles, int longest);
 
-/// The same for a box that so many triangles move in.
+/// The same for a box that so many triangles move in. Throws InputError if its ends are not finite
+/// or not in rising order.
 [[nodiscard]] GridCells cells_in_box(const glm::dvec3& low, const glm::dvec3& high, int longest,
                                      std::size_t triangles);
 
@@ -65,7 +66,8 @@ CELLIST_STRUCT(GridPart, triangle, part, parts);
 class TriangleGrid {
 public:
     /// Uploads the triangles and builds the kernels. The grid is empty until build(). Throws
-    /// MemoryError if the device has no room for the cells.
+    /// MemoryError if the device has no room for the cells, or Error for more than 2^32 / 3
+    /// triangles.
     TriangleGrid(const cellist::Device& device, std::span<const GridTriangle> triangles,
                  const GridCells& cells, cellist::Storage storage = cellist::Storage::counted);
 
