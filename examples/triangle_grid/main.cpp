@@ -1,5 +1,5 @@
 // Triangles in the cells of a 3D grid, and segments that ask whether anything is in their way;
-// checked against every triangle.
+// checked against every triangle, or against Embree.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -11,10 +11,12 @@
 #include <cellist/cellist.hpp>
 
 #include "command_line.hpp"
+#include "embree.hpp"
 #include "files.hpp"
 #include "grid/rays.hpp"
 #include "grid/triangle_grid.hpp"
 #include "image.hpp"
+#include "input_error.hpp"
 #include "mesh.hpp"
 #include "picture.hpp"
 #include "reference.hpp"
@@ -31,6 +33,7 @@ struct Options {
     cellist::Storage storage = cellist::Storage::counted;
     std::size_t segments = 1'000'000;
     std::size_t check = 3000;
+    bool embree = false;
     std::uint32_t seed = 1;
     std::string device;
     std::string help;
@@ -43,15 +46,24 @@ Options parse_options(int count, const char* const* arguments) {
                               "that meet a triangle.");
     line.add_text("mesh", options.mesh,
                   "mesh file (PLY, OBJ, glTF, STL, OFF, ...); the default is a knot", "MESH");
-    line.add_number("--grid", options.grid, 1, GRID_EXTENT_MAX,
-                    "cells along the longest side of the mesh");
+    line.add_number("--grid", options.grid, 0, GRID_EXTENT_MAX,
+                    "cells along the longest side of the mesh; 0 = automatic");
     line.add_storage(options.storage);
     line.add_number("--segments", options.segments, 0, 100'000'000, "number of segments");
     line.add(
-        "--check", std::to_string(options.check), "greatest number of segments to check on the CPU",
-        "N|all", [&](const std::string& text) {
-            options.check = text == "all" ? options.segments
-                                          : support::read_number("--check", text, 0, 0xFFFFFFFF);
+        "--check", std::to_string(options.check),
+        "greatest number of segments to check on the CPU; embree = compare random segments with "
+        "Embree",
+        "N|all|embree", [&](const std::string& text) {
+            options.embree = text == "embree";
+            if (options.embree && !triangle_grid::has_embree())
+                throw support::InputError(
+                    "--check embree: this build has no Embree; install libembree-dev and build "
+                    "again");
+            if (text == "all")
+                options.check = options.segments;
+            else if (!options.embree)
+                options.check = support::read_number("--check", text, 0, 0xFFFFFFFF);
         });
     line.add("--out", "",
              "draw the mesh with shadows and write the picture here: .png, .jpg, .pfm or .exr",
@@ -94,6 +106,33 @@ bool check(const std::vector<triangle_grid::Segment>& segments, const std::vecto
     return equal;
 }
 
+// Compares all segments with Embree, prints the result and both times, and returns whether all
+// answers are right. An exact test of every triangle decides where answers differ.
+bool check_with_embree(const std::vector<triangle_grid::Segment>& segments,
+                       const std::vector<cl_uint>& hits,
+                       const std::vector<grid::GridTriangle>& triangles, double ms,
+                       std::FILE* screen) {
+    const triangle_grid::EmbreeAnswers embree = triangle_grid::ask_embree(triangles, segments);
+    std::size_t different = 0, wrong = 0;
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+        const bool is_hit = hits[i] != 0;
+        if (is_hit == (embree.hits[i] != 0)) continue;
+        ++different;
+        if (is_hit != triangle_grid::meets_any(segments[i], triangles)) ++wrong;
+    }
+    const double embree_ms = embree.build_ms + embree.trace_ms;
+    std::fprintf(screen,
+                 "embree      build %.1f ms, segments %.1f ms (%.2f million/s); the grid is %.2f "
+                 "times as fast in all\n",
+                 embree.build_ms, embree.trace_ms,
+                 static_cast<double>(segments.size()) / embree.trace_ms * 1e-3, embree_ms / ms);
+    std::fprintf(screen,
+                 "check       %zu of %zu differ from Embree: %zu answers of Embree are wrong, %zu "
+                 "of the grid\n",
+                 different, segments.size(), different - wrong, wrong);
+    return wrong == 0;
+}
+
 bool run(const Options& options) {
     std::FILE* const screen = support::is_standard_output(options.out) ? stderr : stdout;
     const cellist::Device device = options.device.empty() ? cellist::Device::choose()
@@ -104,7 +143,9 @@ bool run(const Options& options) {
     std::vector<grid::GridTriangle> triangles = triangle_grid::triangles_of(mesh);
     const grid::GridCells cells = grid::cells_around(triangles, options.grid);
     const std::vector<triangle_grid::Segment> segments =
-        triangle_grid::make_segments(options.segments, cells, triangles, options.seed);
+        options.embree
+            ? triangle_grid::make_random_segments(options.segments, cells, options.seed)
+            : triangle_grid::make_segments(options.segments, cells, triangles, options.seed);
     triangle_grid::add_flat_triangles(triangles);
 
     grid::TriangleGrid grid(device, triangles, cells, options.storage);
@@ -115,7 +156,8 @@ bool run(const Options& options) {
     rays.any_hits(asked, asked.size(), any);
     cellist::BuildReport report;
     const double build_ms = support::measure_ms(device, [&] { report = grid.build(); });
-    const double ask_ms = support::measure_ms(device, [&] { rays.any_hits(asked, asked.size(), any); });
+    const double ask_ms =
+        support::measure_ms(device, [&] { rays.any_hits(asked, asked.size(), any); });
     const std::vector<cl_uint> hits = any.download();
 
     std::fprintf(screen, "device      %s\n", device.info().name.c_str());
@@ -143,7 +185,10 @@ bool run(const Options& options) {
     const bool accounted =
         report.dropped == 0 && report.rejected == 0 && report.stored >= triangles.size();
     if (!accounted) std::fprintf(screen, "check       entries are MISSING\n");
-    return check(segments, hits, triangles, options.check, screen) && accounted;
+    const bool is_right =
+        options.embree ? check_with_embree(segments, hits, triangles, build_ms + ask_ms, screen)
+                       : check(segments, hits, triangles, options.check, screen);
+    return is_right && accounted;
 }
 
 }  // namespace

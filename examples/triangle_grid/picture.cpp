@@ -69,10 +69,8 @@ double draw_picture(const cellist::Device& device, const grid::TriangleGrid& tri
         cellist::type<grid::GridTriangle>, cellist::type<Camera>);
     cellist::Range range((options.width + 7) / 8 * 8, (options.height + 7) / 8 * 8);
     range.local = {8, 8, 1};
-    const double ms = support::measure_ms(device, [&] {
-        triangles.run(draw, range, normals,
-                 camera, image);
-    });
+    const double ms =
+        support::measure_ms(device, [&] { triangles.run(draw, range, normals, camera, image); });
     support::write_image(options.out, image.download(), options.width, options.height);
     return ms;
 }

@@ -97,6 +97,15 @@ std::vector<Segment> make_segments(std::size_t count, const grid::GridCells& cel
     return segments;
 }
 
+std::vector<Segment> make_random_segments(std::size_t count, const grid::GridCells& cells,
+                                          std::uint32_t seed) {
+    Generator generator(cells, {}, seed);
+    std::vector<Segment> segments;
+    segments.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) segments.push_back(generator.make(0));
+    return segments;
+}
+
 std::vector<grid::GridSegment> to_device(std::span<const Segment> segments) {
     std::vector<grid::GridSegment> result;
     result.reserve(segments.size());

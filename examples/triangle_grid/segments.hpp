@@ -32,6 +32,10 @@ inline constexpr std::array<std::string_view, 9> kinds{"between random points",
 [[nodiscard]] std::vector<Segment> make_segments(std::size_t count, const grid::GridCells& cells,
                                                  std::span<const grid::GridTriangle> triangles,
                                                  std::uint32_t seed);
+/// All of the first kind.
+[[nodiscard]] std::vector<Segment> make_random_segments(std::size_t count,
+                                                        const grid::GridCells& cells,
+                                                        std::uint32_t seed);
 
 /// The same segments as grid::Rays takes them.
 [[nodiscard]] std::vector<grid::GridSegment> to_device(std::span<const Segment> segments);
