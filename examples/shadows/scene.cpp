@@ -85,12 +85,22 @@ glm::dmat4 placed(const glm::dvec3& centre, const glm::dvec3& size) {
     return glm::scale(glm::translate(glm::dmat4(1), centre), size);
 }
 
-// A square around the origin with sides of length 1, in the plane of x and y.
+// A square around the origin with sides of length 1, in the plane of x and y. Of many triangles: on
+// GPUs, the rasteriser shares out a triangle of many pixels over one work-group only.
 support::Mesh square() {
+    constexpr std::uint32_t n = 16;
     support::Mesh mesh;
-    mesh.positions = {{-0.5F, -0.5F, 0}, {0.5F, -0.5F, 0}, {0.5F, 0.5F, 0}, {-0.5F, 0.5F, 0}};
-    mesh.normals.assign(4, glm::vec3(0, 0, 1));
-    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    for (std::uint32_t y = 0; y <= n; ++y)
+        for (std::uint32_t x = 0; x <= n; ++x)
+            mesh.positions.emplace_back(static_cast<float>(x) / n - 0.5F,
+                                        static_cast<float>(y) / n - 0.5F, 0);
+    mesh.normals.assign(mesh.positions.size(), glm::vec3(0, 0, 1));
+    for (std::uint32_t y = 0; y < n; ++y)
+        for (std::uint32_t x = 0; x < n; ++x) {
+            const std::uint32_t a = y * (n + 1) + x, b = a + 1, c = a + n + 1, d = c + 1;
+            mesh.triangles.push_back({a, b, d});
+            mesh.triangles.push_back({a, d, c});
+        }
     return mesh;
 }
 

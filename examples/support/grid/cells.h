@@ -33,7 +33,8 @@
 // float.
 #define GRID_NEAR 2048.0f
 
-// A triangle that may touch more columns of cells is shared out over work-items, in parts.
+// A triangle that may touch more columns of cells is shared out over work-groups, in parts.
+#define GRID_COLUMNS_ALONE 16u
 #define GRID_COLUMNS_PER_PART 64u
 #define GRID_PARTS_MAX 256u
 

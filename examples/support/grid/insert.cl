@@ -176,7 +176,7 @@ kernel void grid_insert(CELLIST_LISTS(GridEntry, entries), const GridCells cells
     const uint columns = grid_columns(&overlap);
     const uint needed = min((columns - 1) / GRID_COLUMNS_PER_PART + 1, GRID_PARTS_MAX);
     // The counter is read first so that it never wraps around.
-    if (needed > 1 && *part_count < part_room) {
+    if (columns > GRID_COLUMNS_ALONE && *part_count < part_room) {
         const uint first = atomic_add(part_count, needed);
         const int fits = first <= part_room && needed <= part_room - first;
         for (uint part = 0; part < needed && first + part < part_room; ++part) {
