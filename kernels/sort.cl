@@ -61,6 +61,11 @@ static inline uint cellist_sort_add(uint* sum, uint value) {
 }
 #endif
 
+// Counts the nodes of lists that were sorted in place.
+static inline void cellist_sort_count_nodes(volatile global cellist_sort_state* state, uint nodes) {
+    atomic_add(&state->in_place[get_group_id(0) % CELLIST_SORT_COUNTERS].nodes, nodes);
+}
+
 // A node as it lies in a pool.
 typedef struct cellist_sort_node {
 #if CELLIST_MODES == CELLIST_LINKED

@@ -156,7 +156,7 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
 
 #if CELLIST_MODES != CELLIST_LINKED
     cellist_sort_barrier();
-    if (item == 0 && total > 0) atomic_add(&state->nodes, total);
+    if (item == 0 && total > 0) cellist_sort_count_nodes(state, total);
 #endif
 #if CELLIST_SORT_ITEMS > 1
     for (uint i = item; i < CELLIST_SORT_CLASSES; i += CELLIST_SORT_ITEMS)

@@ -99,7 +99,7 @@ kernel void cellist_sort_partial(CELLIST_LISTS(CELLIST_RECORD, lists), uint top_
     }
     uint nodes = 0;
     for (uint i = 0; i < own; ++i) nodes += lengths[i];
-    if (nodes > 0) atomic_add(&state->nodes, nodes);
+    if (nodes > 0) cellist_sort_count_nodes(state, nodes);
     for (uint i = 0; i < own; ++i) {
         if (next[i] != ends[i])
             atomic_inc(next[i] < lists_view.pool_nodes ? &state->longer[0] : &state->broken);

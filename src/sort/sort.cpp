@@ -140,8 +140,10 @@ void ListSorter::read_state(Sort& sort) const {
 
 /// Throws Error where the lists do not have as many nodes as the last build stored.
 void ListSorter::check_nodes(const Sort& sort) const {
-    if (sort.state.nodes == sort.storage.stored()) return;
-    throw Error("lists cannot be sorted: they have " + std::to_string(sort.state.nodes) +
+    std::uint64_t nodes = sort.state.nodes;
+    for (const cellist_sort_counter& counter : sort.state.in_place) nodes += counter.nodes;
+    if (nodes == sort.storage.stored()) return;
+    throw Error("lists cannot be sorted: they have " + std::to_string(nodes) +
                 " nodes instead of " + std::to_string(sort.storage.stored()) +
                 " (Lists::validate() finds why)");
 }
