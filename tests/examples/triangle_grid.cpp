@@ -82,9 +82,9 @@ void require_right(const Triangles& triangles, const std::vector<Segment>& segme
         // Rounding in double decides where the segment nearly lies in the plane.
         if (!(meeting.condition < 1e9)) continue;
         if (!(meeting.at <= nearest + 0x1p-12)) ++too_far;
-        if (!(std::abs(double{hit.at} - meeting.at) < 1e-6)) ++wrong_distance;
-        if (!(std::abs(double{hit.u} - meeting.u) < 1e-6 &&
-              std::abs(double{hit.v} - meeting.v) < 1e-6))
+        if (!(std::abs(static_cast<double>(hit.at) - meeting.at) < 1e-6)) ++wrong_distance;
+        if (!(std::abs(static_cast<double>(hit.u) - meeting.u) < 1e-6 &&
+              std::abs(static_cast<double>(hit.v) - meeting.v) < 1e-6))
             ++wrong_weights;
     }
     CHECK(wrong_any == 0);

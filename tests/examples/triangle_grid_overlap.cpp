@@ -22,7 +22,7 @@ using Corners = std::array<glm::dvec3, 3>;
 glm::dvec3 in_cells(const grid::GridCells& cells, const glm::vec3& place) {
     glm::dvec3 result(place);
     for (int k = 0; k < 3; ++k)
-        result[k] = (result[k] - double{cells.origin[k]}) / grid::cell_side(cells);
+        result[k] = (result[k] - static_cast<double>(cells.origin[k])) / grid::cell_side(cells);
     return result;
 }
 

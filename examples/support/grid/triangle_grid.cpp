@@ -69,7 +69,7 @@ Ends ends_along(std::vector<float>& lows, std::vector<float>& highs) {
     const auto at = [](std::vector<float>& values, std::size_t rank) -> double {
         std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rank),
                          values.end());
-        return values[rank];
+        return static_cast<double>(values[rank]);
     };
     const std::size_t count = lows.size();
     // A thousandth, so that small meshes are not cut.
@@ -116,7 +116,7 @@ GridCells cells_in_box(const glm::dvec3& low, const glm::dvec3& high, int longes
         throw support::InputError("a grid of " + std::to_string(longest) +
                                   " cells: expected 1 to " + std::to_string(GRID_EXTENT_MAX));
     const glm::dvec3 size = high - low;
-    constexpr double largest = std::numeric_limits<float>::max();
+    constexpr auto largest = static_cast<double>(std::numeric_limits<float>::max());
     for (int k = 0; k < 3; ++k)
         if (!(low[k] <= high[k] && low[k] >= -largest && high[k] <= largest))
             throw support::InputError("the box of a grid reaches from " + std::to_string(low[k]) +
