@@ -23,14 +23,6 @@ cellist::Kernel kernel(const cellist::Device& device, const TriangleGrid& triang
 /// Kernels number the ends of segments in 32 bits.
 constexpr std::size_t segments_max = 0x7FFFFFFF;
 
-/// As many work-items as a device runs at once: each takes segments until there are none left.
-cellist::Range whole_device(const cellist::DeviceInfo& device) {
-    const std::size_t group = device.one_thread_per_work_group ? 1 : 64;
-    const std::size_t groups =
-        std::size_t{device.compute_units} * (device.one_thread_per_work_group ? 1 : 16);
-    return cellist::Range::padded(groups * group, group);
-}
-
 }  // namespace
 
 Rays::Rays(const cellist::Device& device, const TriangleGrid& triangles)

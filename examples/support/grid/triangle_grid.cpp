@@ -142,6 +142,13 @@ GridCells cells_in_box(const glm::dvec3& low, const glm::dvec3& high, int longes
     return cells;
 }
 
+cellist::Range whole_device(const cellist::DeviceInfo& device) {
+    const std::size_t group = device.one_thread_per_work_group ? 1 : 64;
+    const std::size_t groups =
+        std::size_t{device.compute_units} * (device.one_thread_per_work_group ? 1 : 16);
+    return cellist::Range::padded(groups * group, group);
+}
+
 double cell_side(const GridCells& cells) {
     return 1 / (static_cast<double>(cells.cells_per_unit) * static_cast<double>(cells.unit));
 }
@@ -153,7 +160,7 @@ TriangleGrid::TriangleGrid(const cellist::Device& device, std::span<const GridTr
       triangles_(device, numbered(triangles)),
       corners_(device, 3 * triangles.size()),
       occupancy_(device, bricks_ + bricks_ / sizeof(cl_ulong) + 1),
-      parts_groups_(std::size_t{device.info().compute_units} * 16),
+      parts_range_(whole_device(device.info())),
       parts_(device, parts_max),
       part_count_(device, 1),
       entries_(device, {bricks_ * GRID_BRICK_CELLS + 1}, {.storage = storage}),
@@ -181,8 +188,7 @@ cellist::BuildReport TriangleGrid::build() {
         part_count_.fill(0);
         insert_.run(cellist::Range::padded(count, 64), entries_, cells_, triangles_, count,
                     corners_, parts_, room, part_count_);
-        insert_parts_.run(cellist::Range::padded(parts_groups_ * 64, 64), entries_, cells_,
-                          triangles_, parts_, room, part_count_);
+        insert_parts_.run(parts_range_, entries_, cells_, triangles_, parts_, room, part_count_);
     });
     find_occupied_.run(cellist::Range::padded(bricks_, 64), entries_, static_cast<cl_uint>(bricks_),
                        occupancy_);

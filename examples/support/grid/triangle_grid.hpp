@@ -95,7 +95,7 @@ private:
     cellist::Buffer<GridTriangle> triangles_;
     cellist::Buffer<cl_float4> corners_;
     cellist::Buffer<cl_ulong> occupancy_;
-    std::size_t parts_groups_;
+    cellist::Range parts_range_;
     cellist::Buffer<GridPart> parts_;
     cellist::Buffer<cl_uint> part_count_;
     cellist::Lists<GridEntry> entries_;
@@ -104,6 +104,10 @@ private:
     cellist::Kernel find_occupied_;
     cellist::Kernel find_empty_;
 };
+
+/// As many work-items as a device runs at once, in work-groups that share a task. On processors, a
+/// work-group has one.
+[[nodiscard]] cellist::Range whole_device(const cellist::DeviceInfo& device);
 
 /// A kernel's source after everything that query.clh defines.
 [[nodiscard]] std::string with_queries(std::string_view source);
