@@ -19,30 +19,32 @@ static void grid_trace_quickly(GRID_SCENE(scene), global const float4* segments,
     const int bricks = grid_brick_count(scene_cells);
     GridRay ray;
     uint i = CELLIST_NONE;
-    int begins = GRID_MISSES;
-    // The next list: first that of the triangles outside of the grid, if the segment leaves it,
-    // then those of the cells. All are asked in one place, which keeps the kernel small.
-    enum { OUTSIDE, FIRST_CELL, NEXT_CELL } next = OUTSIDE;
+    int leave = 0;
     for (;;) {
+        int is_done = 0;
         if (i == CELLIST_NONE) {
             i = atomic_inc(&counters->next);
             if (i >= count) return;
-            begins =
+            leave = 0;
+            const int begins =
                 grid_ray_begin(&ray, scene_cells, segments[2 * i].xyz, segments[2 * i + 1].xyz, 0);
             if (begins == GRID_INVALID) atomic_inc(&counters->invalid);
-            if (begins == GRID_FAR) ray.undecided = 1;
-            next = ray.walk.leaves_grid ? OUTSIDE : FIRST_CELL;
+            if (begins == GRID_FAR) {
+                ray.undecided = 1;
+                is_done = 1;
+            } else if (begins != GRID_INVALID) {
+                is_done = grid_ray_visit_outside(GRID_PASS(scene), &ray, is_closest, 0);
+            }
+            if (begins != GRID_BEGINS) is_done = 1;
         }
-        uint list = GRID_NO_CELL;
-        if (next == OUTSIDE) {
-            list = grid_outside(scene_cells);
-        } else if (begins == GRID_BEGINS) {
-            list = grid_walk_find(&ray.walk, scene_occupancy, bricks, next == NEXT_CELL);
-            if (is_closest && grid_ray_is_beyond(&ray)) list = GRID_NO_CELL;
+        if (!is_done) {
+            const uint cell = grid_walk_find(&ray.walk, scene_occupancy, bricks, leave);
+            leave = 1;
+            if (cell == GRID_NO_CELL || (is_closest && grid_ray_is_beyond(&ray)))
+                is_done = 1;
+            else
+                is_done = grid_ray_visit(GRID_PASS(scene), &ray, cell, is_closest, 0);
         }
-        int is_done = list == GRID_NO_CELL;
-        if (!is_done) is_done = grid_ray_visit(GRID_PASS(scene), &ray, list, is_closest, 0);
-        next = next == OUTSIDE ? FIRST_CELL : NEXT_CELL;
         if (!is_done) continue;
         const int is_hit = ray.triangle != GRID_NO_TRIANGLE;
         if (ray.undecided && (is_closest || !is_hit))
