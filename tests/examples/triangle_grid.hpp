@@ -31,7 +31,8 @@ GridAnswers ask(const Triangles& triangles, const grid::GridCells& cells,
 
 /// Requires that all answers are those of asking every triangle: whether there is a hit, exactly;
 /// the closest one by distances in double; its distance and barycentric weights to within roundings
-/// of floats. Weights of segments that are very long beside the triangle are not compared.
+/// of floats. Weights of segments that are very long beside the triangle are not compared. Skips
+/// on devices without double.
 void require_right(const Triangles& triangles, const std::vector<Segment>& segments,
                    const GridAnswers& answers);
 /// With two storages.

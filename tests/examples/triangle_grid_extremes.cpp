@@ -162,7 +162,7 @@ TEST_CASE("a far outlier leaves the grid fine") {
         grid::TriangleGrid grid(device(), triangles, cells);
         // The cells of a triangle are told apart in double.
         const std::uint64_t listed = grid.build().stored;
-        if (far < 1e13F) CHECK(listed < stored + 1000);
+        if (far < 1e13F && device().info().fp64) CHECK(listed < stored + 1000);
         std::vector<Segment> segments = triangle_grid::make_segments(900, cells, triangles, 13);
         for (const Segment& segment : through(triangles, 300, 0.2F, places))
             segments.push_back(segment);
