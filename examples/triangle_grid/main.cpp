@@ -29,7 +29,7 @@ namespace {
 struct Options {
     std::filesystem::path mesh;
     std::filesystem::path out;
-    int grid = 64;
+    int grid = 0;
     cellist::Storage storage = cellist::Storage::counted;
     std::size_t segments = 1'000'000;
     std::size_t check = 3000;
