@@ -12,9 +12,9 @@
 #include "input_error.hpp"
 #include "mesh.hpp"
 #include "methods/method.hpp"
+#include "number_text.hpp"
 #include "raster/rasteriser.hpp"
 #include "read_file.hpp"
-#include "report/number_text.hpp"
 #include "scene/scenes.hpp"
 
 namespace oit {
@@ -286,7 +286,7 @@ void add_frame_options(support::CommandLine& line, FrameOptions& options) {
                        });
     line.add("--size", std::to_string(options.width) + "x" + std::to_string(options.height),
              "image size in pixels", "WxH", [&](Text text) { read_size(text, options); });
-    line.add("--alpha", shortest(options.alpha),
+    line.add("--alpha", support::shortest(options.alpha),
              "opacity of surfaces whose file gives none, 0 to 1", "A", [&](Text text) {
                  options.alpha = static_cast<float>(
                      support::read_between("--alpha", text, 0, 1, "a number from 0 to 1"));
@@ -311,18 +311,18 @@ void add_frame_options(support::CommandLine& line, FrameOptions& options) {
              options.quality.depth_scale == DepthScale::linear ? "linear" : "reversed",
              "stored depth: linear (the depth) or reversed (1 / depth)", "S",
              [&](Text text) { read_depth_scale(text, options); });
-    line.add(
-        "--view",
-        shortest(options.orbit.azimuth_degrees) + "," + shortest(options.orbit.elevation_degrees),
-        "direction to look from, in degrees", "AZIMUTH,ELEVATION",
-        [&](Text text) { read_view(text, options); });
-    line.add("--stereo", options.eye_separation ? shortest(*options.eye_separation) : "",
+    line.add("--view",
+             support::shortest(options.orbit.azimuth_degrees) + "," +
+                 support::shortest(options.orbit.elevation_degrees),
+             "direction to look from, in degrees", "AZIMUTH,ELEVATION",
+             [&](Text text) { read_view(text, options); });
+    line.add("--stereo", options.eye_separation ? support::shortest(*options.eye_separation) : "",
              "draw two eyes at this distance; the scene has radius 1", "DISTANCE", [&](Text text) {
                  options.eye_separation =
                      support::read_between("--stereo", text, 0, 1, "a distance from 0 to 1");
              });
-    line.add("--time", shortest(options.time), "time of an animated scene, in seconds", "T",
-             [&](Text text) {
+    line.add("--time", support::shortest(options.time), "time of an animated scene, in seconds",
+             "T", [&](Text text) {
                  options.time = support::read_between("--time", text, -1e6, 1e6,
                                                       "seconds from -1000000 to 1000000");
              });

@@ -11,7 +11,7 @@
 #include "files.hpp"
 #include "image.hpp"
 #include "input_error.hpp"
-#include "report/number_text.hpp"
+#include "number_text.hpp"
 
 namespace oit {
 namespace {
@@ -138,7 +138,7 @@ void add_quality_options(support::CommandLine& line, Options& options) {
              [&](Text text) { read_method(text, options); });
     line.add("--layers", "all", "nearest layers to blend", "K|all",
              [&](Text text) { read_layers(text, options); });
-    line.add("--epsilon", shortest(options.quality.epsilon),
+    line.add("--epsilon", support::shortest(options.quality.epsilon),
              "stop blending once the transmittance is at most E", "E", [&](Text text) {
                  options.quality.epsilon = static_cast<float>(
                      support::read_between("--epsilon", text, 0, 1, "a number from 0 to 1"));
@@ -161,7 +161,7 @@ void add_budget_options(support::CommandLine& line, Options& options, bool& stri
              "40dB|1/255", [&](Text text) { options.budget = parse_budget(text); });
     line.add_number("--check-every", options.check_every, 1, 1'000'000,
                     "check each N-th changed frame against the budget");
-    line.add("--search-seconds", shortest(options.search_seconds),
+    line.add("--search-seconds", support::shortest(options.search_seconds),
              "time limit of the search for a setting within the budget", "S", [&](Text text) {
                  options.search_seconds = support::read_between("--search-seconds", text, 0, 1e6,
                                                                 "seconds from 0 to 1000000");
@@ -179,7 +179,7 @@ void add_motion_options(support::CommandLine& line, Options& options) {
                  options.until = support::read_between("--until", text, -1e6, 1e6,
                                                        "seconds from -1000000 to 1000000");
              });
-    line.add("--turn", shortest(options.turn_degrees),
+    line.add("--turn", support::shortest(options.turn_degrees),
              "turn the camera from the first frame to the last", "DEGREES", [&](Text text) {
                  options.turn_degrees = support::read_between("--turn", text, -1e6, 1e6,
                                                               "degrees from -1000000 to 1000000");
@@ -193,7 +193,7 @@ void add_output_options(support::CommandLine& line, Options& options) {
     line.add("--out", options.out.path().string(),
              "picture to write: .png, .jpg, .pfm or .exr, - for stdout; all frames as "
              "frame-%04d.png",
-             "FILE", [&](Text text) { options.out = PictureName(text); });
+             "FILE", [&](Text text) { options.out = support::PictureName(text); });
     line.add_text("--write-reference", options.write_reference,
                   "write the rendering in double precision to this file", "FILE");
     line.add_text(

@@ -7,7 +7,7 @@
 
 #include "budget/budget_search.hpp"
 #include "frame_options.hpp"
-#include "report/picture_name.hpp"
+#include "picture_name.hpp"
 
 namespace oit {
 
@@ -21,7 +21,7 @@ struct Options : FrameOptions {
     std::optional<double> until = {};  ///< the last frame's time; the first is at `time`
     double turn_degrees = 0;           ///< from the first frame to the last
     bool reference = false;
-    PictureName out{"oit.png"};
+    support::PictureName out{"oit.png"};
     std::filesystem::path write_reference = {};   ///< asks for `reference`, too
     std::filesystem::path write_difference = {};  ///< asks for `reference`, too
     std::filesystem::path json = {};

@@ -5,10 +5,10 @@
 #include <stdexcept>
 
 #include "methods/renderer.hpp"
+#include "number_text.hpp"
 #include "oit/frames/run.hpp"
 #include "oit/plain_cpp.hpp"
 #include "reference/comparison.hpp"
-#include "report/number_text.hpp"
 
 namespace bench {
 namespace {
@@ -20,7 +20,7 @@ double check_picture(PlainCpp& plain, const oit::Frame& frame) {
     const double psnr_db = oit::compare(oit::draw_reference(frame), plain.image(), {}).psnr_db;
     if (!(psnr_db >= least_psnr_db))
         throw std::runtime_error("plain C++ draws another picture: PSNR of " +
-                                 oit::fixed(psnr_db, 1) + " dB");
+                                 support::fixed(psnr_db, 1) + " dB");
     return psnr_db;
 }
 

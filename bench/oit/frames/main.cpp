@@ -6,8 +6,8 @@
 
 #include "command_line.hpp"
 #include "files.hpp"
+#include "number_text.hpp"
 #include "oit/frames/run.hpp"
-#include "report/number_text.hpp"
 
 namespace {
 
@@ -27,7 +27,7 @@ Options parse(int count, const char* const* arguments) {
     line.add_text("--git", options.git, "the commit to record in the results", "HASH");
     line.add_text("--filter", options.filter,
                   "run only what matches this regular expression: SECTION/CASE", "RE");
-    line.add("--size", oit::shortest(options.size), "factor for the sides of all images", "F",
+    line.add("--size", support::shortest(options.size), "factor for the sides of all images", "F",
              [&](const std::string& text) {
                  options.size =
                      support::read_between("--size", text, 1e-3, 8, "a number from 0.001 to 8");

@@ -3,7 +3,7 @@
 #include "command_line.hpp"
 #include "files.hpp"
 #include "input_error.hpp"
-#include "report/number_text.hpp"
+#include "number_text.hpp"
 
 namespace oit {
 namespace {
@@ -53,7 +53,7 @@ GridOptions parse_grid_options(int count, const char* const* arguments) {
                   "TEXT");
     line.add_number("--frames", options.frames, 1, 10'000,
                     "least number of timed frames of each setting; close settings draw more");
-    line.add("--cost", shortest(options.cost),
+    line.add("--cost", support::shortest(options.cost),
              "greatest cost of the chosen setting, relative to the best", "RATIO",
              [&](const std::string& text) {
                  options.cost =

@@ -4,7 +4,7 @@
 #include <iomanip>
 #include <ostream>
 
-#include "report/number_text.hpp"
+#include "number_text.hpp"
 
 namespace oit {
 namespace {
@@ -16,7 +16,7 @@ void print_measurement(const char* what, const SettingMeasurement& measurement,
     out << "  " << std::left << std::setw(8) << what << std::setw(50) << text(measurement.setting)
         << std::right << std::setw(12) << budget.text_of(measurement.errors.resolved);
     if (measurement.times.runs > 0)
-        out << std::setw(9) << fixed(measurement.times.median_ms, 2) << " ms";
+        out << std::setw(9) << support::fixed(measurement.times.median_ms, 2) << " ms";
 }
 
 std::string verdict(const GridCase& grid_case, double most_cost) {
@@ -70,7 +70,8 @@ void print(const GridCase& grid_case, double most_cost, std::ostream& out) {
     out << std::left << std::setw(30) << grid_case.name << verdict(grid_case, most_cost) << '\n';
     print_measurement(grid_case.choice.met ? "chosen" : "closest", grid_case.chosen,
                       grid_case.budget, out);
-    out << (grid_case.choice.met ? ", " + fixed(grid_case.cost, 2) + " times" : "") << '\n';
+    out << (grid_case.choice.met ? ", " + support::fixed(grid_case.cost, 2) + " times" : "")
+        << '\n';
     if (grid_case.best) {
         print_measurement("best", *grid_case.best, grid_case.budget, out);
         out << '\n';

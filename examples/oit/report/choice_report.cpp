@@ -10,7 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "report/number_text.hpp"
+#include "number_text.hpp"
 
 namespace oit {
 namespace {
@@ -18,7 +18,7 @@ namespace {
 using Outcome = Candidate::Outcome;
 
 std::string percent(double part) {
-    return fixed(100 * part, 100 * part < 1 && part > 0 ? 3 : 1) + " %";
+    return support::fixed(100 * part, 100 * part < 1 && part > 0 ? 3 : 1) + " %";
 }
 
 // Without what is the same for all.
@@ -44,10 +44,10 @@ std::uint64_t median_layers(const SurveyResult& scene) {
 
 std::string layers_text(const SurveyResult& scene) {
     if (scene.fragments == 0) return "nothing transparent is visible";
-    return counted(scene.fragments, "fragment") + " in " +
+    return support::counted(scene.fragments, "fragment") + " in " +
            percent(static_cast<double>(scene.nonempty_pixels) / static_cast<double>(scene.pixels)) +
-           " of the pixels, half of these with " + counted(median_layers(scene), "layer") +
-           " at most, the deepest with " + grouped(scene.longest);
+           " of the pixels, half of these with " + support::counted(median_layers(scene), "layer") +
+           " at most, the deepest with " + support::grouped(scene.longest);
 }
 
 std::string light_text(const SurveyResult& scene) {
@@ -62,8 +62,9 @@ std::string light_text(const SurveyResult& scene) {
 std::string unresolved_text(const SurveyResult& scene) {
     const auto& [of_float, of_24, of_16] = scene.pixels_unresolved;
     if (of_float + of_24 + of_16 == 0) return "resolved in all pixels, even with depths of 16 bits";
-    return "not resolved in " + counted(of_float, "pixel") + " with float depths, in " +
-           grouped(of_24) + " with 24 bits, in " + grouped(of_16) + " with 16 bits";
+    return "not resolved in " + support::counted(of_float, "pixel") + " with float depths, in " +
+           support::grouped(of_24) + " with 24 bits, in " + support::grouped(of_16) +
+           " with 16 bits";
 }
 
 std::string reason(const Candidate& candidate) {
@@ -99,30 +100,33 @@ std::string limit_text(const PictureError& error, const Budget& budget) {
 
 std::string other_order_text(const Choice& choice, const Budget& budget) {
     const bool counts = budget.strict, is_psnr = budget.kind == Budget::Kind::psnr;
-    return "in " + counted(choice.scene.pixels_unresolved[0], "undecided pixel") +
+    return "in " + support::counted(choice.scene.pixels_unresolved[0], "undecided pixel") +
            " float does not tell the order of layers: " +
            (counts ? "apart from these, " : "with the other order there, ") +
            limit_text(counts ? choice.errors.resolved : choice.errors.all, budget) +
            (counts || is_psnr || choice.errors.undecided_pixels == 0
                 ? ""
-                : ", over " + budget.text() + " in " + grouped(choice.errors.undecided_pixels));
+                : ", over " + budget.text() + " in " +
+                      support::grouped(choice.errors.undecided_pixels));
 }
 
 // Where all layers in float were chosen, there is nothing to compare.
 std::string speed_text(const Choice& choice) {
     const bool is_exact = text(choice.setting) == text(exact_setting(choice.setting.quality));
     if (!choice.met || !choice.exact_times || is_exact) return {};
-    return "all layers in float take " + fixed(*choice.exact_times, 2) + " times as long";
+    return "all layers in float take " + support::fixed(*choice.exact_times, 2) + " times as long";
 }
 
 // "12.1 to 13.4 ms"
 std::string quartiles_text(const Spread& times) {
-    return fixed(times.lower_quartile_ms, 2) + " to " + fixed(times.upper_quartile_ms, 2) + " ms";
+    return support::fixed(times.lower_quartile_ms, 2) + " to " +
+           support::fixed(times.upper_quartile_ms, 2) + " ms";
 }
 
 std::string chosen_text(const Choice& choice) {
-    return short_text(choice.setting) + ": " + fixed(choice.times.median_ms, 2) + " ms (half of " +
-           counted(choice.timed_frames, "frame") + " in " + quartiles_text(choice.times) + ")";
+    return short_text(choice.setting) + ": " + support::fixed(choice.times.median_ms, 2) +
+           " ms (half of " + support::counted(choice.timed_frames, "frame") + " in " +
+           quartiles_text(choice.times) + ")";
 }
 
 // Why this setting was chosen, where times alone do not decide.
@@ -130,17 +134,17 @@ std::string plainest_text(const Choice& choice) {
     const std::uint64_t others = choice.count(Outcome::as_fast);
     if (others == 0) return {};
     return std::string(others == 1 ? "one other setting is"
-                                   : grouped(others) + " other settings are") +
+                                   : support::grouped(others) + " other settings are") +
            " as fast, within the spread of the times: the plainest is chosen";
 }
 
 std::string search_text(const Choice& choice) {
-    std::string text = counted(choice.candidates.size(), "setting") + ", " +
-                       counted(choice.draws, "frame") + ", " + fixed(choice.took_ms / 1000, 1) +
-                       " s";
+    std::string text = support::counted(choice.candidates.size(), "setting") + ", " +
+                       support::counted(choice.draws, "frame") + ", " +
+                       support::fixed(choice.took_ms / 1000, 1) + " s";
     if (const std::uint64_t left = choice.count(Outcome::not_reached); left > 0)
-        text +=
-            "; the time limit left out " + counted(left, "setting") + ": raise --search-seconds";
+        text += "; the time limit left out " + support::counted(left, "setting") +
+                ": raise --search-seconds";
     return text;
 }
 
@@ -169,8 +173,10 @@ std::vector<const Candidate*> shown_of(const std::vector<const Candidate*>& othe
 }
 
 std::string times_text(const Candidate& candidate) {
-    if (candidate.times_chosen) return fixed(*candidate.times_chosen, 2) + " times";
-    return candidate.times_fastest ? "about " + fixed(*candidate.times_fastest, 2) + " times" : "-";
+    if (candidate.times_chosen) return support::fixed(*candidate.times_chosen, 2) + " times";
+    return candidate.times_fastest
+               ? "about " + support::fixed(*candidate.times_fastest, 2) + " times"
+               : "-";
 }
 
 // "12 not needed; 31 slower"
@@ -210,9 +216,10 @@ void print_others(const Choice& choice, const Budget& budget, std::ostream& out)
 
 std::string record_text(const Budget& budget, const BudgetRecord& record) {
     const std::string worst = limit_text(budget.counted(record.worst()), budget);
-    return grouped(record.checked()) + " of " + counted(record.frames(), "frame") + " checked, " +
-           grouped(record.chosen_again()) + " chosen again, " + grouped(record.over().size()) +
-           " over the budget; the worst " +
+    return support::grouped(record.checked()) + " of " +
+           support::counted(record.frames(), "frame") + " checked, " +
+           support::grouped(record.chosen_again()) + " chosen again, " +
+           support::grouped(record.over().size()) + " over the budget; the worst " +
            (budget.kind == Budget::Kind::psnr ? "has " : "is off by ") + worst;
 }
 
@@ -220,7 +227,8 @@ std::string record_text(const Budget& budget, const BudgetRecord& record) {
 std::string not_met_reason(const Choice& choice, const Budget& budget) {
     if (choice.met || budget.met_by(choice.scene.exact))
         return budget.strict && budget.met_by(choice.errors.resolved)
-                   ? "--strict counts " + counted(choice.errors.undecided_pixels, "undecided pixel")
+                   ? "--strict counts " +
+                         support::counted(choice.errors.undecided_pixels, "undecided pixel")
                    : "no setting meets the budget";
     return (budget.kind == Budget::Kind::psnr ? "no more than " : "no less than ") +
            budget.text_of(choice.scene.exact) +
@@ -231,8 +239,9 @@ std::string not_met_reason(const Choice& choice, const Budget& budget) {
 std::string not_met_text(const Choice& choice, const Budget& budget, const BudgetRecord& record) {
     std::string text = not_met_reason(choice, budget);
     if (record.over().size() < record.frames())
-        text += "; over it in " + counted(record.over().size(), "frame") + ", first in frame " +
-                grouped(record.first_over()) + " of " + grouped(record.frames());
+        text += "; over it in " + support::counted(record.over().size(), "frame") +
+                ", first in frame " + support::grouped(record.first_over()) + " of " +
+                support::grouped(record.frames());
     return text;
 }
 
@@ -270,7 +279,7 @@ void BudgetRecord::add(const BudgetController::Drawn& drawn, double time, const 
 std::string BudgetRecord::verdict() const {
     if (!met()) return "not met";
     if (undecided_pixels_ == 0) return "met";
-    return "met except " + counted(undecided_pixels_, "undecided pixel");
+    return "met except " + support::counted(undecided_pixels_, "undecided pixel");
 }
 
 void print(const Choice& choice, const Budget& budget, const BudgetRecord& record,
@@ -285,8 +294,8 @@ void print(const Choice& choice, const Budget& budget, const BudgetRecord& recor
                        (budget.strict ? ", strict: " : ": ") + record.verdict());
     line("layers", layers_text(scene));
     if (scene.fragments > 0) {
-        line("opacity", fixed(static_cast<double>(scene.least_alpha), 3) + " to " +
-                            fixed(static_cast<double>(scene.greatest_alpha), 3));
+        line("opacity", support::fixed(static_cast<double>(scene.least_alpha), 3) + " to " +
+                            support::fixed(static_cast<double>(scene.greatest_alpha), 3));
         line("light that passes", light_text(scene));
         line("order of layers", unresolved_text(scene));
     }

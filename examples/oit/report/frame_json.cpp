@@ -6,7 +6,7 @@
 
 #include "command_line.hpp"
 #include "files.hpp"
-#include "report/number_text.hpp"
+#include "number_text.hpp"
 
 namespace oit {
 namespace {
@@ -34,7 +34,7 @@ ordered_json finite_or_null(double value) {
     return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
 }
 
-double as_read(float value) { return std::stod(shortest(value)); }
+double as_read(float value) { return std::stod(support::shortest(value)); }
 
 ordered_json json_of(const std::filesystem::path& path) {
     return path.empty() ? ordered_json(nullptr) : ordered_json(support::text_of(path));

@@ -8,8 +8,8 @@
 
 #include "budget/setting.hpp"
 #include "files.hpp"
+#include "number_text.hpp"
 #include "report/frame_json.hpp"
-#include "report/number_text.hpp"
 
 namespace oit {
 namespace {
@@ -19,10 +19,12 @@ namespace {
 std::string early_end_text(const Report& report) {
     const double bound = static_cast<double>(report.options.quality.epsilon) *
                          static_cast<double>(report.colour_max);
-    return "linear colours off by " + fixed(255 * bound, 4) + " / 255 at most";
+    return "linear colours off by " + support::fixed(255 * bound, 4) + " / 255 at most";
 }
 
-std::string nearest_text(std::uint32_t layers) { return "the " + counted(layers, "nearest layer"); }
+std::string nearest_text(std::uint32_t layers) {
+    return "the " + support::counted(layers, "nearest layer");
+}
 
 using Line = std::function<std::ostream&(const std::string& name)>;
 
@@ -30,14 +32,15 @@ using Line = std::function<std::ostream&(const std::string& name)>;
 // these make.
 void print_comparison(const Report& report, const Line& line) {
     const Comparison& c = *report.comparison;
-    line("PSNR") << fixed(c.psnr_db, 1) << " dB against all layers in double precision\n";
+    line("PSNR") << support::fixed(c.psnr_db, 1) << " dB against all layers in double precision\n";
     if (report.nearest_comparison)
-        line("") << fixed(report.nearest_comparison->psnr_db, 1) << " dB against "
+        line("") << support::fixed(report.nearest_comparison->psnr_db, 1) << " dB against "
                  << nearest_text(*report.options.quality.layers) << " in double precision\n";
-    line("SSIM") << fixed(c.ssim, 6) << '\n';
-    line("largest error") << fixed(255 * c.max_abs_error, 4) << " / 255\n";
-    line("over 1/255") << grouped(c.pixels_over) << " of " << counted(c.pixels, "pixel") << ", "
-                       << grouped(c.pixels_explained)
+    line("SSIM") << support::fixed(c.ssim, 6) << '\n';
+    line("largest error") << support::fixed(255 * c.max_abs_error, 4) << " / 255\n";
+    line("over 1/255") << support::grouped(c.pixels_over) << " of "
+                       << support::counted(c.pixels, "pixel") << ", "
+                       << support::grouped(c.pixels_explained)
                        << " explained by depths closer than 2^-20 of each other\n";
     if (!c.has_depths) {
         line("counts, depths") << "not compared: "
@@ -48,61 +51,64 @@ void print_comparison(const Report& report, const Line& line) {
     }
     line("fragment counts") << (c.pixels_with_other_count == 0
                                     ? std::string("equal in every pixel")
-                                    : "differ in " + counted(c.pixels_with_other_count, "pixel") +
-                                          ", reference has " + grouped(c.fragments) + " in all")
+                                    : "differ in " +
+                                          support::counted(c.pixels_with_other_count, "pixel") +
+                                          ", reference has " + support::grouped(c.fragments) +
+                                          " in all")
                             << '\n';
-    line("depth error") << fixed(c.max_depth_error * (1 << 24), 2) << " * 2^-24 at most"
+    line("depth error") << support::fixed(c.max_depth_error * (1 << 24), 2) << " * 2^-24 at most"
                         << (has_float_depth(report.options.quality.format) ? " (bound: 8)" : "")
                         << '\n';
 }
 
 void print_method(const Report& report, const Line& line) {
     const Options& options = report.options;
-    line("method") << method_text({&method_named(options.method), options.quality}) << ", "
-                   << (report.node_bytes
-                           ? "nodes of " + std::to_string(*report.node_bytes) + " bytes, "
-                           : "")
-                   << counted(static_cast<std::uint64_t>(options.quality.samples), "sample")
-                   << " a pixel\n";
+    line("method")
+        << method_text({&method_named(options.method), options.quality}) << ", "
+        << (report.node_bytes ? "nodes of " + std::to_string(*report.node_bytes) + " bytes, " : "")
+        << support::counted(static_cast<std::uint64_t>(options.quality.samples), "sample")
+        << " a pixel\n";
     if (options.quality.reduce > 1)
         line("reduced") << "transparent surfaces drawn with " << options.quality.reduce
                         << " times fewer pixels a side\n";
 }
 
 void print_fragments(const Report& report, const Line& line) {
-    line("triangles") << grouped(report.triangles) << support::dropped_text(report.drops) << '\n';
+    line("triangles") << support::grouped(report.triangles) << support::dropped_text(report.drops)
+                      << '\n';
     std::uint64_t textures = 0;
     for (const SceneMesh& mesh : report.meshes) textures += mesh.ignored_textures;
-    if (textures > 0) line("ignored") << counted(textures, "texture") << '\n';
+    if (textures > 0) line("ignored") << support::counted(textures, "texture") << '\n';
     if (!report.lengths) {
         // A choice says how many there are.
         if (!report.choice)
             line("fragments") << "not counted: the method does not keep all of them\n";
         return;
     }
-    line("fragments") << grouped(report.lengths->total) << '\n';
-    line("non-empty pixels") << grouped(report.lengths->nonempty_cells) << '\n';
-    line("longest list") << grouped(report.lengths->longest) << '\n';
+    line("fragments") << support::grouped(report.lengths->total) << '\n';
+    line("non-empty pixels") << support::grouped(report.lengths->nonempty_cells) << '\n';
+    line("longest list") << support::grouped(report.lengths->longest) << '\n';
 }
 
 void print_memory(const Report& report, const Line& line) {
-    line("memory") << megabytes(report.method_bytes) << " MB of the method, "
-                   << megabytes(report.device_bytes) << " MB in all\n";
+    line("memory") << support::megabytes(report.method_bytes) << " MB of the method, "
+                   << support::megabytes(report.device_bytes) << " MB in all\n";
     if (report.options.memory_bytes)
-        line("slices") << report.slices << ", " << grouped(report.method_bytes) << " of "
-                       << grouped(*report.options.memory_bytes) << " bytes used\n";
+        line("slices") << report.slices << ", " << support::grouped(report.method_bytes) << " of "
+                       << support::grouped(*report.options.memory_bytes) << " bytes used\n";
 }
 
 void print_times(const Report& report, const Line& line) {
     const PassTimes& passes = report.passes;
-    line("transform") << fixed(passes.transform_ms, 2) << " ms\n";
+    line("transform") << support::fixed(passes.transform_ms, 2) << " ms\n";
     if (report.blends_slices) {
-        line("insert to blend") << fixed(passes.raster_insert_ms, 2) << " ms, slice by slice\n";
+        line("insert to blend") << support::fixed(passes.raster_insert_ms, 2)
+                                << " ms, slice by slice\n";
     } else {
-        line("raster + insert") << fixed(passes.raster_insert_ms, 2) << " ms\n";
-        line("sort + blend") << fixed(passes.sort_blend_ms, 2) << " ms\n";
+        line("raster + insert") << support::fixed(passes.raster_insert_ms, 2) << " ms\n";
+        line("sort + blend") << support::fixed(passes.sort_blend_ms, 2) << " ms\n";
     }
-    line("frame") << fixed(report.times.milliseconds, 2) << " ms (median of "
+    line("frame") << support::fixed(report.times.milliseconds, 2) << " ms (median of "
                   << report.options.frames << ")\n";
 }
 
@@ -196,7 +202,7 @@ void print(const Report& report, std::ostream& out) {
     else if (options.quality.epsilon > 0)
         line("early end") << early_end_text(report) << '\n';
     if (report.pixels_nan > 0)
-        line("NaN") << counted(report.pixels_nan, "pixel") << ", drawn black\n";
+        line("NaN") << support::counted(report.pixels_nan, "pixel") << ", drawn black\n";
     if (report.comparison) print_comparison(report, line);
     for (const SceneMesh& mesh : report.meshes) {
         for (const std::string& note : mesh.notes) line("note") << note << '\n';

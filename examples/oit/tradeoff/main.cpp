@@ -7,9 +7,9 @@
 #include "command_line.hpp"
 #include "files.hpp"
 #include "input_error.hpp"
+#include "number_text.hpp"
 #include "progress.hpp"
 #include "report/frame_json.hpp"
-#include "report/number_text.hpp"
 #include "tradeoff/metrics.hpp"
 #include "tradeoff/page.hpp"
 #include "tradeoff/sweep.hpp"
@@ -25,8 +25,8 @@ oit::Reference reference_of(const oit::Frame& frame) {
 void print_progress(const oit::Measurement& measurement, std::size_t done, std::size_t count) {
     std::cerr << '[' << done << '/' << count << "] " << text(measurement.setting) << ": ";
     if (measurement.drawn())
-        std::cerr << oit::fixed(measurement.milliseconds, 2) << " ms, "
-                  << oit::fixed(measurement.comparison.psnr_db, 1) << " dB\n";
+        std::cerr << support::fixed(measurement.milliseconds, 2) << " ms, "
+                  << support::fixed(measurement.comparison.psnr_db, 1) << " dB\n";
     else
         std::cerr << measurement.failure << '\n';
 }

@@ -5,8 +5,8 @@
 #include <ostream>
 #include <string>
 
+#include "number_text.hpp"
 #include "report/frame_json.hpp"
-#include "report/number_text.hpp"
 
 namespace oit {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 using nlohmann::ordered_json;
 
 std::string decibels(double psnr_db) {
-    return std::isfinite(psnr_db) ? fixed(psnr_db, 1) : "equal";
+    return std::isfinite(psnr_db) ? support::fixed(psnr_db, 1) : "equal";
 }
 
 void print_settings(const Sweep& sweep, std::ostream& out) {
@@ -26,27 +26,28 @@ void print_settings(const Sweep& sweep, std::ostream& out) {
         const Measurement& m = sweep.measurements[i];
         out << (front[i] ? " * " : "   ");
         if (m.drawn())
-            out << std::setw(9) << fixed(m.milliseconds, 2) << std::setw(6)
-                << fixed(100 * m.spread(), 1) << std::setw(9) << megabytes(m.bytes) << std::setw(9)
-                << decibels(m.comparison.psnr_db) << std::setw(9) << fixed(m.comparison.ssim, 5)
-                << std::setw(11) << fixed(255 * m.comparison.max_abs_error, 3) << "  "
-                << text(m.setting) << '\n';
+            out << std::setw(9) << support::fixed(m.milliseconds, 2) << std::setw(6)
+                << support::fixed(100 * m.spread(), 1) << std::setw(9)
+                << support::megabytes(m.bytes) << std::setw(9) << decibels(m.comparison.psnr_db)
+                << std::setw(9) << support::fixed(m.comparison.ssim, 5) << std::setw(11)
+                << support::fixed(255 * m.comparison.max_abs_error, 3) << "  " << text(m.setting)
+                << '\n';
         else
             out << std::setw(9) << "-" << std::setw(46) << ""
                 << "  " << text(m.setting) << ": " << m.failure << '\n';
     }
     const double equal = equally_fast - 1, spread = typical_spread(sweep.measurements);
-    out << " * no other setting is both as fast (within " << fixed(100 * equal, 0)
+    out << " * no other setting is both as fast (within " << support::fixed(100 * equal, 0)
         << " % or with overlapping spreads) and as accurate\n"
            "   error: the largest of any channel\n"
            " +-%: half of the frames differ from the median by no more\n";
     if (spread > equal)
         out << " The times are uncertain: half of the settings have a spread of "
-            << fixed(100 * spread, 0) << " % or more. Ignore smaller differences.\n";
+            << support::fixed(100 * spread, 0) << " % or more. Ignore smaller differences.\n";
 }
 
 std::string quartiles(const Relation& relation) {
-    return fixed(relation.least, 2) + " to " + fixed(relation.most, 2);
+    return support::fixed(relation.least, 2) + " to " + support::fixed(relation.most, 2);
 }
 
 // What a factor is worth.
@@ -61,8 +62,9 @@ void print_fewer_layers(const Sweep& sweep, std::ostream& out) {
         << "\n     layers  speed-up      by quartiles  PSNR dB\n";
     for (const Relation& relation : relations)
         out << std::setw(11) << *relation.measurement->setting.quality.layers << std::setw(10)
-            << fixed(relation.factor, 2) << std::setw(18) << quartiles(relation) << std::setw(9)
-            << decibels(relation.measurement->comparison.psnr_db) << unresolved(relation) << '\n';
+            << support::fixed(relation.factor, 2) << std::setw(18) << quartiles(relation)
+            << std::setw(9) << decibels(relation.measurement->comparison.psnr_db)
+            << unresolved(relation) << '\n';
 }
 
 void print_exact_methods(const Sweep& sweep, std::ostream& out) {
@@ -72,8 +74,8 @@ void print_exact_methods(const Sweep& sweep, std::ostream& out) {
            "         ms  times as long      by quartiles\n";
     for (const Relation& relation : relations) {
         const Measurement& m = *relation.measurement;
-        out << std::setw(11) << fixed(m.milliseconds, 2) << std::setw(15)
-            << fixed(relation.factor, 2) << std::setw(18) << quartiles(relation) << "  "
+        out << std::setw(11) << support::fixed(m.milliseconds, 2) << std::setw(15)
+            << support::fixed(relation.factor, 2) << std::setw(18) << quartiles(relation) << "  "
             << m.setting.method->name
             << (m.setting.method->name == "linked" ? "" : unresolved(relation)) << '\n';
     }
@@ -111,7 +113,7 @@ void print(const Sweep& sweep, std::ostream& out) {
     const FrameOptions& options = sweep.options;
     out << "cellist-tradeoff " << sweep.scene_name() << ", " << options.width << 'x'
         << options.height << (options.eye_separation ? ", two eyes" : "") << ", "
-        << grouped(sweep.triangles) << " triangles, " << grouped(sweep.fragments)
+        << support::grouped(sweep.triangles) << " triangles, " << support::grouped(sweep.fragments)
         << " fragments, up to " << sweep.most_layers << " in a pixel\n"
         << "  " << sweep.device << " (driver " << sweep.driver << "), median of " << sweep.frames
         << " frames\n";

@@ -1,5 +1,5 @@
 // The structural similarity is that of Wang et al. 2004.
-#include "reference/ssim.hpp"
+#include "ssim.hpp"
 
 #include <cmath>
 #include <random>
@@ -57,8 +57,8 @@ double defined_ssim(const std::vector<double>& a, const std::vector<double>& b, 
 TEST_CASE("an image is like itself") {
     for (const auto& [width, height] : {std::pair{1, 1}, {3, 40}, {64, 48}}) {
         const auto image = noise(static_cast<std::size_t>(width * height), 7);
-        CHECK(nearly(oit::mean_ssim(image, image, static_cast<std::size_t>(width),
-                                    static_cast<std::size_t>(height)),
+        CHECK(nearly(support::mean_ssim(image, image, static_cast<std::size_t>(width),
+                                        static_cast<std::size_t>(height)),
                      1));
     }
 }
@@ -66,7 +66,7 @@ TEST_CASE("an image is like itself") {
 TEST_CASE("of images of one value each, the luminance counts") {
     for (const double b : {0.0, 0.25, 1.0}) {
         const std::vector<double> first(40 * 30, 0.5), second(40 * 30, b);
-        CHECK(nearly(oit::mean_ssim(first, second, 40, 30), (b + c1) / (0.25 + b * b + c1)));
+        CHECK(nearly(support::mean_ssim(first, second, 40, 30), (b + c1) / (0.25 + b * b + c1)));
     }
 }
 
@@ -76,7 +76,7 @@ TEST_CASE("an image and its negative are unlike") {
         image[p] = (p / 32 + p % 32) % 2 == 0 ? 1 : 0;
         negative[p] = 1 - image[p];
     }
-    CHECK(oit::mean_ssim(image, negative, 32, 32) < -0.98);
+    CHECK(support::mean_ssim(image, negative, 32, 32) < -0.98);
 }
 
 TEST_CASE("images of noise are as alike as the definition says") {
@@ -85,8 +85,8 @@ TEST_CASE("images of noise are as alike as the definition says") {
         const std::vector<double> a = noise(pixels, 1);
         std::vector<double> b = noise(pixels, 2);
         for (std::size_t p = 0; p < pixels; ++p) b[p] = 0.7 * a[p] + 0.3 * b[p];
-        const double ssim =
-            oit::mean_ssim(a, b, static_cast<std::size_t>(width), static_cast<std::size_t>(height));
+        const double ssim = support::mean_ssim(a, b, static_cast<std::size_t>(width),
+                                               static_cast<std::size_t>(height));
         CHECK(nearly(ssim, defined_ssim(a, b, width, height)));
         CHECK(ssim < 0.99);
     }

@@ -5,8 +5,8 @@
 #include "image.hpp"
 #include "input_error.hpp"
 #include "oit/support/program.hpp"
+#include "picture_name.hpp"
 #include "report/picture.hpp"
-#include "report/picture_name.hpp"
 
 namespace cellist::test {
 namespace {
@@ -133,13 +133,13 @@ TEST_CASE("a number in a name counts the frames") {
                                         {"x/50%%-%02d.png", "x/50%-07.png"},
                                         {"50%%.png", "50%.png"},
                                         {"%s/a.png", "%s/a.png"}})
-        CHECK(oit::PictureName(name).of(7) == seventh);
-    CHECK(oit::PictureName("%02d.png").of(123) == "123.png");
-    CHECK_FALSE(oit::PictureName("50%%.png").has_number());
+        CHECK(support::PictureName(name).of(7) == seventh);
+    CHECK(support::PictureName("%02d.png").of(123) == "123.png");
+    CHECK_FALSE(support::PictureName("50%%.png").has_number());
     for (const char* name : {"%.png", "%s.png", "%4d.png", "%0d.png", "%00d.png", "%04x.png",
                              "%012d.png", "%d-%d.png", "a%"}) {
         INFO(name);
-        CHECK_THROWS_AS(oit::PictureName(name), support::InputError);
+        CHECK_THROWS_AS(support::PictureName(name), support::InputError);
     }
 }
 

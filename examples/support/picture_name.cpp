@@ -1,13 +1,13 @@
-#include "report/picture_name.hpp"
+#include "picture_name.hpp"
 
 #include "files.hpp"
 #include "input_error.hpp"
 
-namespace oit {
+namespace support {
 
 PictureName::PictureName(const std::filesystem::path& path) : path_(path) {
     const auto refuse = [&](const std::string& why) {
-        throw support::InputError("--out " + support::text_of(path) + ": " + why);
+        throw InputError("--out " + text_of(path) + ": " + why);
     };
     const std::string name = path.filename().string();
     for (std::size_t i = 0; i < name.size(); ++i) {
@@ -41,4 +41,4 @@ std::filesystem::path PictureName::of(std::uint32_t frame) const {
     return std::filesystem::path(path_).replace_filename(before_ + number + after_);
 }
 
-}  // namespace oit
+}  // namespace support

@@ -1,11 +1,11 @@
-#include "reference/ssim.hpp"
+#include "ssim.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
-namespace oit {
+namespace support {
 namespace {
 
 constexpr std::ptrdiff_t reach = 5;  // of the window, to each side
@@ -70,4 +70,4 @@ double mean_ssim(std::span<const double> a, std::span<const double> b, std::size
     return sum / static_cast<double>(width * height);
 }
 
-}  // namespace oit
+}  // namespace support

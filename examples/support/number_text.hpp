@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-namespace oit {
+namespace support {
 
 // Numbers as people read them.
 
@@ -41,4 +41,4 @@ namespace oit {
     return fixed(static_cast<double>(bytes) / 1e6, 1);
 }
 
-}  // namespace oit
+}  // namespace support

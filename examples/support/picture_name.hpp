@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace oit {
+namespace support {
 
 /// The name of a picture, or of the pictures of all frames: "frame-%04d.png". "%%" is a per cent
 /// sign.
@@ -26,4 +26,4 @@ private:
     bool has_number_ = false;
 };
 
-}  // namespace oit
+}  // namespace support

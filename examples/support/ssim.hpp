@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <span>
 
-namespace oit {
+namespace support {
 
 /// The mean structural similarity of two images of one channel between 0 and 1, row by row: 1 where
 /// they are equal (Wang, Bovik, Sheikh, Simoncelli, IEEE Transactions on Image Processing 13,
@@ -12,4 +12,4 @@ namespace oit {
 [[nodiscard]] double mean_ssim(std::span<const double> a, std::span<const double> b,
                                std::size_t width, std::size_t height);
 
-}  // namespace oit
+}  // namespace support
