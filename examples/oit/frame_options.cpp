@@ -159,19 +159,6 @@ void set_blend(Scene& scene, Blend blend) {
             material.blend = static_cast<cl_uint>(blend);
 }
 
-bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
-    // Paths that cannot be followed are refused where they are opened.
-    std::error_code error;
-    if (support::is_standard_output(a)) return support::is_standard_output(b);
-    // Several outputs may go to /dev/null.
-    if (std::filesystem::is_character_file(a, error)) return false;
-    if (std::filesystem::equivalent(a, b, error)) return true;
-    const auto full = [&](const std::filesystem::path& path) {
-        return std::filesystem::weakly_canonical(std::filesystem::absolute(path, error), error);
-    };
-    return full(a) == full(b) && !error;
-}
-
 std::string meant_scene(const std::string& text) {
     std::vector<std::string> names;
     for (const SceneInfo& info : scenes()) names.emplace_back(info.name);
@@ -236,22 +223,13 @@ std::string blend_text(const FrameOptions& options) {
     return {};
 }
 
-void check_outputs(const FrameOptions& options, std::span<const NamedFile> outputs) {
-    std::vector<NamedFile> known;
+void check_outputs(const FrameOptions& options, std::span<const support::NamedFile> outputs) {
+    std::vector<support::NamedFile> inputs;
     if (find_scene(options.scene) == nullptr)
         for (const std::string& argument : arguments_of(options))
-            known.push_back({"the mesh", mesh_file(argument).path});
-    if (options.blend_function) known.push_back({"--blend", options.blend_function->file_name});
-    for (const NamedFile& output : outputs) {
-        const auto& [name, path] = output;
-        if (path.empty()) continue;
-        support::check_output_path(path);
-        for (const auto& [other, its_path] : known)
-            if (same_file(path, its_path))
-                throw InputError(std::string(name) + " and " + std::string(other) +
-                                 " name the same file, '" + support::text_of(path) + "'");
-        known.push_back(output);
-    }
+            inputs.push_back({"the mesh", mesh_file(argument).path});
+    if (options.blend_function) inputs.push_back({"--blend", options.blend_function->file_name});
+    support::check_outputs(std::move(inputs), outputs);
 }
 
 std::string help_on_tables() {

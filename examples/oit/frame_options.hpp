@@ -11,6 +11,7 @@
 #include <cellist/cellist.hpp>
 
 #include "camera.hpp"
+#include "files.hpp"
 #include "frame/frame.hpp"
 #include "mesh.hpp"
 
@@ -46,15 +47,8 @@ void add_frame_options(support::CommandLine& line, FrameOptions& options);
 /// The text of --blend; empty where the scene decides.
 [[nodiscard]] std::string blend_text(const FrameOptions& options);
 
-/// A file, and how messages name it: for the most part by the option that it was given with.
-struct NamedFile {
-    std::string_view name;
-    std::filesystem::path path;  ///< may be empty where nothing is to be written
-};
-
-/// Throws InputError unless a file can be written at each path that is not empty, and none of them
-/// is another one, or one that the options read.
-void check_outputs(const FrameOptions& options, std::span<const NamedFile> outputs);
+/// support::check_outputs() with the files that the options read.
+void check_outputs(const FrameOptions& options, std::span<const support::NamedFile> outputs);
 
 /// For the end of a help text: all methods and scenes.
 [[nodiscard]] std::string help_on_tables();

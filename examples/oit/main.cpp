@@ -13,12 +13,12 @@
 #include "files.hpp"
 #include "frame/frame.hpp"
 #include "image.hpp"
+#include "json_report.hpp"
 #include "methods/renderer.hpp"
 #include "options.hpp"
 #include "progress.hpp"
 #include "reference/comparison.hpp"
 #include "reference/reference.hpp"
-#include "report/frame_json.hpp"
 #include "report/picture.hpp"
 #include "report/report.hpp"
 #include "stopwatch.hpp"
@@ -170,7 +170,7 @@ void write(oit::Report& report, const oit::Frame& frame, const oit::Renderer& re
     if (options.reference) compare_with_references(report, frame, renderer, image);
     report.peak_bytes = peak_bytes();
     if (!options.json.empty())
-        support::write_file(options.json, oit::dump(to_json(report), 2) + '\n');
+        support::write_file(options.json, support::dump(to_json(report), 2) + '\n');
     oit::print(report, options.writes_to_stdout() ? std::cerr : std::cout);
 }
 

@@ -72,10 +72,10 @@ void read_memory(const std::string& text, Options& options) {
 
 void check_outputs(const Options& options) {
     const std::filesystem::path first = options.out.of(1);
-    const NamedFile outputs[] = {{"--out", first},
-                                 {"--write-reference", options.write_reference},
-                                 {"--write-difference", options.write_difference},
-                                 {"--json", options.json}};
+    const support::NamedFile outputs[] = {{"--out", first},
+                                          {"--write-reference", options.write_reference},
+                                          {"--write-difference", options.write_difference},
+                                          {"--json", options.json}};
     check_outputs(options, outputs);
     for (const std::filesystem::path& picture :
          {first, options.write_reference, options.write_difference})

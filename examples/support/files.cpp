@@ -7,6 +7,7 @@
 #include <iostream>
 #include <random>
 #include <system_error>
+#include <utility>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -121,6 +122,19 @@ int replace(const fs::path& path, std::string_view bytes) {
     return error == EBUSY && exists ? write_directly(path, bytes) : error;
 }
 
+bool same_file(const fs::path& a, const fs::path& b) {
+    // Paths that cannot be followed are refused where they are opened.
+    std::error_code error;
+    if (is_standard_output(a)) return is_standard_output(b);
+    // Several outputs may go to /dev/null.
+    if (fs::is_character_file(a, error)) return false;
+    if (fs::equivalent(a, b, error)) return true;
+    const auto full = [&](const fs::path& path) {
+        return fs::weakly_canonical(fs::absolute(path, error), error);
+    };
+    return full(a) == full(b) && !error;
+}
+
 }  // namespace
 
 std::string text_of(const fs::path& path) {
@@ -173,6 +187,20 @@ void check_output_path(const fs::path& path) {
     const bool exists = fs::exists(path, error);
     if (::access(exists ? path.c_str() : folder.c_str(), W_OK) != 0)
         throw cannot_write(path, reason(errno));
+}
+
+void check_outputs(std::vector<NamedFile> inputs, std::span<const NamedFile> outputs) {
+    std::vector<NamedFile> known = std::move(inputs);
+    for (const NamedFile& output : outputs) {
+        const auto& [name, path] = output;
+        if (path.empty()) continue;
+        check_output_path(path);
+        for (const auto& [other, its_path] : known)
+            if (same_file(path, its_path))
+                throw InputError(std::string(name) + " and " + std::string(other) +
+                                 " name the same file, '" + text_of(path) + "'");
+        known.push_back(output);
+    }
 }
 
 void prepare_output() {

@@ -2,8 +2,10 @@
 
 #include <exception>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace support {
 
@@ -32,6 +34,16 @@ void write_file(const std::filesystem::path& path, std::string_view bytes);
 /// A check before long work: throws InputError, with the reason, where write_file() is sure to
 /// fail.
 void check_output_path(const std::filesystem::path& path);
+
+/// A file, and how messages name it: for the most part by the option that it was given with.
+struct NamedFile {
+    std::string_view name;
+    std::filesystem::path path;  ///< may be empty where nothing is to be written
+};
+
+/// Throws InputError unless a file can be written at each path that is not empty, and none of them
+/// is another one or an input.
+void check_outputs(std::vector<NamedFile> inputs, std::span<const NamedFile> outputs);
 
 /// Call this before anything is printed, so that errors of output have their reason. A file beyond
 /// the size limit of the process then makes write() fail, without a signal. stdout is written when

@@ -15,6 +15,7 @@
 #include "grid_options.hpp"
 #include "grid_report.hpp"
 #include "input_error.hpp"
+#include "json_report.hpp"
 #include "report/frame_json.hpp"
 #include "search.hpp"
 
@@ -105,7 +106,8 @@ bool run(const oit::GridOptions& options) {
     if (cases == 0) throw support::InputError("--filter " + options.filter + " leaves no case");
     std::cout << met << " of " << cases << " cases met\n";
     if (!options.json.empty())
-        support::write_file(options.json, oit::dump(to_json(results, options, device), 2) + '\n');
+        support::write_file(options.json,
+                            support::dump(to_json(results, options, device), 2) + '\n');
     return met == cases;
 }
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <filesystem>
-#include <string>
 #include <string_view>
 
 #include <nlohmann/json.hpp>
@@ -17,9 +15,6 @@ namespace oit {
 /// The version of that table.
 inline constexpr int json_schema = 1;
 
-/// Null for a value that is infinite or NaN.
-[[nodiscard]] nlohmann::ordered_json finite_or_null(double value);
-
 /// The shortest number that stands for a float: 0.35, without the extra digits of a double.
 [[nodiscard]] double as_read(float value);
 
@@ -34,11 +29,5 @@ inline constexpr int json_schema = 1;
 
 /// How far a picture is from the reference.
 [[nodiscard]] nlohmann::ordered_json json_of(const Comparison& comparison);
-
-/// A file that was written, or null.
-[[nodiscard]] nlohmann::ordered_json json_of(const std::filesystem::path& path);
-
-/// The text of a JSON value; replaces bytes that are not UTF-8.
-[[nodiscard]] std::string dump(const nlohmann::ordered_json& json, int indent);
 
 }  // namespace oit

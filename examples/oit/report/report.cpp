@@ -8,6 +8,7 @@
 
 #include "budget/setting.hpp"
 #include "files.hpp"
+#include "json_report.hpp"
 #include "number_text.hpp"
 #include "report/frame_json.hpp"
 
@@ -170,10 +171,10 @@ nlohmann::ordered_json reference_json(const Comparison& comparison) {
 }
 
 nlohmann::ordered_json files_json(const Options& options) {
-    return {{"out", json_of(options.out.path())},
-            {"write_reference", json_of(options.write_reference)},
-            {"write_difference", json_of(options.write_difference)},
-            {"json", json_of(options.json)}};
+    return {{"out", support::file_or_null(options.out.path())},
+            {"write_reference", support::file_or_null(options.write_reference)},
+            {"write_difference", support::file_or_null(options.write_difference)},
+            {"json", support::file_or_null(options.json)}};
 }
 
 // Of what is not there, for whoever reads the file as a table.

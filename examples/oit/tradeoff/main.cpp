@@ -7,9 +7,9 @@
 #include "command_line.hpp"
 #include "files.hpp"
 #include "input_error.hpp"
+#include "json_report.hpp"
 #include "number_text.hpp"
 #include "progress.hpp"
-#include "report/frame_json.hpp"
 #include "tradeoff/metrics.hpp"
 #include "tradeoff/page.hpp"
 #include "tradeoff/sweep.hpp"
@@ -74,7 +74,7 @@ void run(const oit::TradeoffOptions& options) {
 
     oit::print(sweep, options.writes_to_stdout() ? std::cerr : std::cout);
     if (!options.json.empty())
-        support::write_file(options.json, oit::dump(to_json(sweep), 2) + '\n');
+        support::write_file(options.json, support::dump(to_json(sweep), 2) + '\n');
     if (!options.csv.empty()) support::write_file(options.csv, to_csv(sweep));
     if (pictures) support::write_file(options.html, to_html(sweep, *pictures));
 }

@@ -5,6 +5,7 @@
 #include <ostream>
 #include <string>
 
+#include "json_report.hpp"
 #include "number_text.hpp"
 #include "report/frame_json.hpp"
 
@@ -131,9 +132,9 @@ ordered_json to_json(const Sweep& sweep) {
     json["device"] = sweep.device;
     json["driver"] = sweep.driver;
     json["methods"] = options.methods;
-    json["files"] = {{"json", json_of(options.json)},
-                     {"csv", json_of(options.csv)},
-                     {"html", json_of(options.html)}};
+    json["files"] = {{"json", support::file_or_null(options.json)},
+                     {"csv", support::file_or_null(options.csv)},
+                     {"html", support::file_or_null(options.html)}};
     json["triangles"] = sweep.triangles;
     json["fragments"] = sweep.fragments;
     json["most_layers"] = sweep.most_layers;
@@ -153,7 +154,7 @@ ordered_json to_json(const Sweep& sweep) {
                                         {"speed_up_least", least},
                                         {"speed_up_most", most},
                                         {"distinct", is_distinct},
-                                        {"psnr_db", finite_or_null(m->comparison.psnr_db)},
+                                        {"psnr_db", support::finite_or_null(m->comparison.psnr_db)},
                                         {"ssim", m->comparison.ssim}});
     json["exact_methods"] = ordered_json::array();
     for (const auto& [m, factor, least, most, is_distinct] : exact_methods(sweep))

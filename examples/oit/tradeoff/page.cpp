@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "image.hpp"
-#include "report/frame_json.hpp"
+#include "json_report.hpp"
 #include "report/picture.hpp"
 #include "tradeoff/metrics.hpp"
 #include "tradeoff_kernels.hpp"
@@ -17,7 +17,7 @@ using nlohmann::ordered_json;
 // JSON that can stand in a script element: no text in it ends that.
 std::string script_text(const ordered_json& json) {
     std::string text;
-    for (const char c : dump(json, -1))
+    for (const char c : support::dump(json, -1))
         text += c == '<' ? std::string("\\u003c") : std::string(1, c);
     return text;
 }

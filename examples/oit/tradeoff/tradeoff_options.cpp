@@ -51,7 +51,7 @@ TradeoffOptions parse_tradeoff_options(int count, const char* const* arguments) 
     line.add_text("--html", options.html, "write a report with plot and pictures to this file",
                   "FILE");
     line.add_check([&] {
-        const NamedFile outputs[] = {
+        const support::NamedFile outputs[] = {
             {"--json", options.json}, {"--csv", options.csv}, {"--html", options.html}};
         check_outputs(options, outputs);
     });

@@ -3,9 +3,9 @@
 #include <set>
 #include <sstream>
 
+#include "json_report.hpp"
 #include "oit/support/program.hpp"
 #include "options.hpp"
-#include "report/frame_json.hpp"
 #include "report/report.hpp"
 #include "tradeoff/metrics.hpp"
 #include "tradeoff/tradeoff_options.hpp"
@@ -95,7 +95,7 @@ ordered_json oit_json(const std::string& arguments) {
     if (report.options.reference) report.comparison.emplace();
     if (report.options.budget)
         report.choice = oit::Choice{.setting = oit::exact_setting(report.options.quality)};
-    return ordered_json::parse(oit::dump(to_json(report), 2));
+    return ordered_json::parse(support::dump(to_json(report), 2));
 }
 
 ordered_json tradeoff_json(const std::string& arguments) {
@@ -106,7 +106,7 @@ ordered_json tradeoff_json(const std::string& arguments) {
     sweep.measurements.push_back({.setting = oit::exact_setting({})});
     sweep.measurements.back().add({1});
     sweep.left_out.push_back({"method", "reason"});
-    return ordered_json::parse(oit::dump(to_json(sweep), 2));
+    return ordered_json::parse(support::dump(to_json(sweep), 2));
 }
 
 std::set<std::string> options_in(const std::string& help) {

@@ -4,8 +4,8 @@
 #include <sstream>
 
 #include "camera.hpp"
+#include "json_report.hpp"
 #include "oit/support/program.hpp"
-#include "report/frame_json.hpp"
 #include "tradeoff/metrics.hpp"
 #include "tradeoff/page.hpp"
 
@@ -88,7 +88,7 @@ TEST_CASE("times whose spreads overlap are not distinct") {
     std::ostringstream out;
     print(noisy, out);
     CHECK(contains(out.str(), "counted  not significant"));
-    const nlohmann::json metrics = nlohmann::json::parse(oit::dump(to_json(noisy), 2));
+    const nlohmann::json metrics = nlohmann::json::parse(support::dump(to_json(noisy), 2));
     CHECK(metrics["exact_methods"][1]["distinct"] == false);
     CHECK(oit::exact_methods(sweep())[1].is_distinct);
 }
@@ -145,7 +145,7 @@ TEST_CASE("base64 is that of RFC 4648") {
 }
 
 TEST_CASE("metrics are read from JSON as they were") {
-    const nlohmann::json metrics = nlohmann::json::parse(oit::dump(to_json(sweep()), 2));
+    const nlohmann::json metrics = nlohmann::json::parse(support::dump(to_json(sweep()), 2));
     CHECK(metrics["scene"] == "<script><b>\"&',.obj");
     CHECK(metrics["alpha"] == 0.35);
     CHECK(metrics["settings"].size() == 4);
