@@ -13,13 +13,13 @@
 #include "command_line.hpp"
 #include "embree.hpp"
 #include "files.hpp"
+#include "grid/exact.hpp"
 #include "grid/rays.hpp"
 #include "grid/triangle_grid.hpp"
 #include "image.hpp"
 #include "input_error.hpp"
 #include "mesh.hpp"
 #include "picture.hpp"
-#include "reference.hpp"
 #include "scene.hpp"
 #include "segments.hpp"
 #include "stopwatch.hpp"
@@ -91,7 +91,7 @@ bool check(const std::vector<triangle_grid::Segment>& segments, const std::vecto
     const std::size_t step = rounds * kinds.size() + 1;
     for (std::size_t n = 0; n < sample; ++n) {
         const std::size_t i = n * step;
-        const bool expected = triangle_grid::meets_any(segments[i], triangles);
+        const bool expected = grid::meets_any(segments[i].from, segments[i].to, triangles);
         const std::size_t kind = i % kinds.size();
         ++asked[kind];
         if (expected) ++blocked[kind];

@@ -11,7 +11,7 @@
 
 #include <cellist/cellist.hpp>
 
-#include "reference.hpp"
+#include "grid/exact.hpp"
 #include "scene.hpp"
 #include "segments.hpp"
 #include "support/catch.hpp"
@@ -72,7 +72,7 @@ void require_right(const Triangles& triangles, const std::vector<Segment>& segme
         const grid::GridHit& hit = answers.closest[i];
         bool is_met = false, is_any = false;
         for (std::size_t k = 0; k < triangles.size(); ++k) {
-            if (!triangle_grid::meets_any(segments[i], {&triangles[k], 1})) continue;
+            if (!grid::meets_any(segments[i].from, segments[i].to, {&triangles[k], 1})) continue;
             is_any = true;
             nearest = std::fmin(nearest, meeting_of(segments[i], triangles[k]).at);
             is_met = is_met || k == hit.triangle;

@@ -1,4 +1,4 @@
-#include "reference.hpp"
+#include "grid/exact.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include <glm/geometric.hpp>
 
-namespace triangle_grid {
+namespace grid {
 namespace {
 
 // A sum of products of three floats, kept as one whole number of units of 2^lowest, which all
@@ -96,7 +96,7 @@ int side(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const gl
     return volume > 0 ? 1 : -1;
 }
 
-bool meets(const glm::dvec3& from, const glm::dvec3& to, const grid::GridTriangle& triangle) {
+bool meets(const glm::dvec3& from, const glm::dvec3& to, const GridTriangle& triangle) {
     const glm::dvec3 a(triangle.a), b(triangle.b), c(triangle.c);
     // The ends on different sides of the plane, or one of them in it.
     const int start = side(a, b, c, from);
@@ -109,22 +109,23 @@ bool meets(const glm::dvec3& from, const glm::dvec3& to, const grid::GridTriangl
 }
 
 // The boxes are apart: most triangles are, and no rounding is involved.
-bool are_apart(const Segment& segment, const grid::GridTriangle& triangle) {
+bool are_apart(const glm::vec3& from, const glm::vec3& to, const GridTriangle& triangle) {
     for (int k = 0; k < 3; ++k) {
         const auto [low, high] = std::minmax({triangle.a[k], triangle.b[k], triangle.c[k]});
-        if (std::max(segment.from[k], segment.to[k]) < low) return true;
-        if (std::min(segment.from[k], segment.to[k]) > high) return true;
+        if (std::max(from[k], to[k]) < low) return true;
+        if (std::min(from[k], to[k]) > high) return true;
     }
     return false;
 }
 
 }  // namespace
 
-bool meets_any(const Segment& segment, std::span<const grid::GridTriangle> triangles) {
-    const glm::dvec3 from(segment.from), to(segment.to);
+bool meets_any(const glm::vec3& from, const glm::vec3& to,
+               std::span<const GridTriangle> triangles) {
+    const glm::dvec3 exact_from(from), exact_to(to);
     return std::any_of(triangles.begin(), triangles.end(), [&](const auto& triangle) {
-        return !are_apart(segment, triangle) && meets(from, to, triangle);
+        return !are_apart(from, to, triangle) && meets(exact_from, exact_to, triangle);
     });
 }
 
-}  // namespace triangle_grid
+}  // namespace grid

@@ -2,13 +2,15 @@
 
 #include <span>
 
-#include "grid/triangle_grid.hpp"
-#include "segments.hpp"
+#include <glm/vec3.hpp>
 
-namespace triangle_grid {
+#include "grid/triangle_grid.hpp"
+
+namespace grid {
 
 /// Whether the segment meets any of the triangles, by asking every one, exactly, on the CPU. What
 /// counts as meeting is defined in segment.clh.
-[[nodiscard]] bool meets_any(const Segment& segment, std::span<const grid::GridTriangle> triangles);
+[[nodiscard]] bool meets_any(const glm::vec3& from, const glm::vec3& to,
+                             std::span<const GridTriangle> triangles);
 
-}  // namespace triangle_grid
+}  // namespace grid
