@@ -19,9 +19,8 @@ constexpr std::size_t batch_rays = std::size_t{1} << 22;
 
 constexpr cl_ulong no_key = std::numeric_limits<cl_ulong>::max();
 
-// Height of rays above surfaces, and the least distance of indirect light, in a scene of 3 m.
+// Height of rays above surfaces, in a scene of 3 m.
 constexpr cl_float bias = 1e-3F;
-constexpr cl_float least_distance = 0.1F;
 
 cl_float4 float4(const glm::dvec3& v, double w) {
     return {{static_cast<cl_float>(v.x), static_cast<cl_float>(v.y), static_cast<cl_float>(v.z),
@@ -146,24 +145,20 @@ std::string kernel_source() {
 }
 
 Gather gather_of(const Settings& s) {
-    if (s.map % s.samples != 0 || s.samples % s.turns != 0)
-        throw support::InputError(
-            "samples must divide the light's map, and turns the samples: " + std::to_string(s.map) +
-            ", " + std::to_string(s.samples) + ", " + std::to_string(s.turns));
+    check_settings(s);
     return {.width = s.width,
             .height = s.height,
-            .map_side = s.map,
+            .rsm_side = s.rsm,
             .samples = s.samples,
-            .scale = s.scale,
-            .turns = s.turns,
+            .reduce = s.reduce,
+            .interleave = s.interleave,
             .first_row = 0,
             .rows = 0,
-            .bias = bias,
-            .least_distance = least_distance};
+            .bias = bias};
 }
 
 std::size_t rays_per_pixel(const Gather& gather) {
-    const auto rays = static_cast<std::size_t>(gather.samples / gather.turns);
+    const auto rays = static_cast<std::size_t>(gather.samples / gather.interleave);
     return rays * rays;
 }
 
@@ -184,6 +179,17 @@ std::vector<std::size_t> all_of(std::size_t count) {
 }
 
 }  // namespace
+
+void check_settings(const Settings& s) {
+    const auto must_divide = [](int part, const char* name, int whole, const char* whole_name) {
+        if (part < 1 || whole % part != 0)
+            throw support::InputError(std::string(name) + " " + std::to_string(part) +
+                                      " does not divide " + whole_name + " " +
+                                      std::to_string(whole));
+    };
+    must_divide(s.samples, "--samples", s.rsm, "--rsm");
+    must_divide(s.interleave, "--interleave", s.samples, "--samples");
+}
 
 void PassTimes::end(const std::string& pass) {
     device_.finish();
@@ -250,7 +256,7 @@ cellist::Kernel Renderer::kernel(const char* name, const Uses&... uses) const {
 Renderer::Renderer(const cellist::Device& device, const Scene& scene, const Settings& settings)
     : device_(device),
       gather_(gather_of(settings)),
-      simplified_(simplified_meshes(scene, settings.blockers)),
+      simplified_(simplified_meshes(scene, settings.simplify)),
       geometry_(device, pointers(scene.meshes, simplified_)),
       placed_(raster_placed(scene)),
       setup_(device),
@@ -260,7 +266,7 @@ Renderer::Renderer(const cellist::Device& device, const Scene& scene, const Sett
                cellist::type<PlacedMesh>, cellist::type<LightSource>),
       placed_meshes_(device, placed_meshes(scene)),
       eye_(device, setup_, geometry_, placed_, eye_view(scene, gather_)),
-      light_(device, setup_, geometry_, placed_, light_view(scene.light, gather_.map_side)),
+      light_(device, setup_, geometry_, placed_, light_view(scene.light, gather_.rsm_side)),
       blockers_(device, blockers_of(scene, geometry_, !simplified_.empty())),
       grid_([&] {
           const auto triangles =
@@ -292,11 +298,11 @@ Renderer::Renderer(const cellist::Device& device, const Scene& scene, const Sett
       gather_blocked_(kernel("gather_blocked")),
       compose_(kernel("compose")) {}
 
-void Renderer::draw(const Scene& scene, PassTimes* times) {
+void Renderer::draw(const Scene& scene, PassTimes* times, const TakeRays& take_rays) {
     const auto end = [&](const char* pass) {
         if (times) times->end(pass);
     };
-    const raster::View lit = light_view(scene.light, gather_.map_side);
+    const raster::View lit = light_view(scene.light, gather_.rsm_side);
     const LightSource light = source_of(lit, scene.light);
     if (scene.move) {
         placed_ = raster_placed(scene);
@@ -317,19 +323,19 @@ void Renderer::draw(const Scene& scene, PassTimes* times) {
     light_.draw(nearest_, surface_, clear_, geometry_, placed_meshes_, light);
     make_emitters_.run(cellist::Range::padded(emitters_.size(), 64), light_.surfaces(), light,
                        gather_, emitters_);
-    end("light's map");
+    end("shadow map");
 
     const cellist::Range pixels((gather_.width + 15) / 16 * 16, (gather_.height + 3) / 4 * 4);
     gather_unblocked_.run(pixels, eye_.surfaces(), emitters_, gather_, a_);
     end("buffer A");
-    gather_blocked(times);
-    compose_.run(pixels, eye_.surfaces(), a_, b_, light_.keys(), gather_.map_side, light, gather_,
+    gather_blocked(times, take_rays);
+    compose_.run(pixels, eye_.surfaces(), a_, b_, light_.keys(), gather_.rsm_side, light, gather_,
                  picture_, unblocked_, blurred_);
     end("picture");
 }
 
 // Traces the rays of B in batches of rows.
-void Renderer::gather_blocked(PassTimes* times) {
+void Renderer::gather_blocked(PassTimes* times, const TakeRays& take_rays) {
     ray_counts_.fill(0);
     Gather batch = gather_;
     for (int row = 0; row < b_height(); row += batch.rows) {
@@ -342,6 +348,7 @@ void Renderer::gather_blocked(PassTimes* times) {
         if (times) times->end("rays of B");
         rays_->any_hits(segments_, places * rays_per_pixel(gather_), blocked_);
         if (times) times->end("trace");
+        if (take_rays) take_rays(segments_, places * rays_per_pixel(gather_), blocked_);
         gather_blocked_.run(cellist::Range::padded(places, 64), eye_.surfaces(), emitters_, batch,
                             blocked_, b_, ray_counts_);
         if (times) times->end("buffer B");
@@ -352,6 +359,8 @@ FrameCounts Renderer::counts() const {
     const std::vector<cl_uint> counts = ray_counts_.download();
     return {counts[0], counts[1], build_};
 }
+
+std::size_t Renderer::rays_in_frame() const { return b_.size() * rays_per_pixel(gather_); }
 
 std::vector<cl_uint> Renderer::passed_entries(const Scene& scene) {
     cellist::Buffer<cl_uint> passed(device_, a_.size());

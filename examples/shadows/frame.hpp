@@ -1,10 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
+#include <functional>
 #include <memory>
-#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <cellist/cellist.hpp>
@@ -21,14 +21,17 @@ namespace shadows {
 struct Settings {
     int width = 1024;
     int height = 768;
-    int map = 512;    ///< texels of the light's map along each axis
-    int samples = 8;  ///< of them along each axis that send indirect light; divides `map`
-    int scale = 4;    ///< pixels of the picture for each one of buffer B, along each axis
-    int turns = 2;    ///< along each axis: neighbours in B share out the samples; divides `samples`
-    int grid = 0;     ///< cells along the longest side, or 0 for as many as suit
-    int blockers = 0;  ///< cells of simplified blockers along their longest side, or 0 for none
+    int rsm = 512;       ///< texels of the reflective shadow map along each axis
+    int samples = 8;     ///< of them along each axis that send indirect light; divides `rsm`
+    int reduce = 4;      ///< pixels of the picture for each one of buffer B, along each axis
+    int interleave = 2;  ///< along each axis: neighbours in B share out the samples; divides these
+    int grid = 0;        ///< cells along the longest side, or 0 for as many as suit
+    int simplify = 0;    ///< cells of simplified blockers along their longest side, or 0 for none
     cellist::Storage storage = cellist::Storage::linked;
 };
+
+/// Throws InputError unless --interleave divides --samples, and these divide --rsm.
+void check_settings(const Settings& settings);
 
 /// Milliseconds of each pass, in the order of their first run. Waits after every pass, so that
 /// passes do not overlap: their sum exceeds the time of a frame.
@@ -80,9 +83,14 @@ class Renderer {
 public:
     Renderer(const cellist::Device& device, const Scene& scene, const Settings& settings);
 
+    /// What takes the rays of a batch and whether they are blocked.
+    using TakeRays =
+        std::function<void(const cellist::Buffer<grid::GridSegment>& rays, std::size_t count,
+                           const cellist::Buffer<cl_uint>& blocked)>;
+
     /// Draws the scene, whose instances, light and camera may have moved. Blocks while the grid is
     /// built.
-    void draw(const Scene& scene, PassTimes* times = nullptr);
+    void draw(const Scene& scene, PassTimes* times = nullptr, const TakeRays& take_rays = {});
 
     /// What the last frame counted. Blocks.
     [[nodiscard]] FrameCounts counts() const;
@@ -100,11 +108,13 @@ public:
     [[nodiscard]] const grid::TriangleGrid& grid() const { return *grid_; }
     [[nodiscard]] const Gather& gather() const { return gather_; }
     [[nodiscard]] int b_width() const {
-        return (gather_.width + gather_.scale - 1) / gather_.scale;
+        return (gather_.width + gather_.reduce - 1) / gather_.reduce;
     }
     [[nodiscard]] int b_height() const {
-        return (gather_.height + gather_.scale - 1) / gather_.scale;
+        return (gather_.height + gather_.reduce - 1) / gather_.reduce;
     }
+    /// Rays of B, with those that no sample lights.
+    [[nodiscard]] std::size_t rays_in_frame() const;
     /// How many entries of the grid a ray from the eye to each pixel's surface passes. Blocks.
     [[nodiscard]] std::vector<cl_uint> passed_entries(const Scene& scene);
     [[nodiscard]] std::uint64_t device_bytes() const;
@@ -112,7 +122,7 @@ public:
 private:
     template <class... Uses>
     [[nodiscard]] cellist::Kernel kernel(const char* name, const Uses&... uses) const;
-    void gather_blocked(PassTimes* times);
+    void gather_blocked(PassTimes* times, const TakeRays& take_rays);
 
     const cellist::Device& device_;
     Gather gather_;

@@ -26,7 +26,7 @@ kernel void place_blockers(global const Blocker* blockers, uint count,
 kernel void make_emitters(global const Surface* lit, const LightSource light, const Gather gather,
                           global Emitter* emitters) {
     const int i = (int)get_global_id(0);
-    const int side = gather.map_side;
+    const int side = gather.rsm_side;
     if (i >= side * side) return;
     const Surface surface = lit[i];
     Emitter emitter;
@@ -41,8 +41,11 @@ kernel void make_emitters(global const Surface* lit, const LightSource light, co
         const float slope = light.is_spot ? rsqrt(1.0f + dot(across, across)) : 1.0f;
         const float received = texel * texel * slope * slope * slope * light_fade(light, image);
         const int part = side / gather.samples;
-        emitter.power = surface.albedo * light.intensity * (received * (float)(part * part));
-        emitter.power.w = 0.0f;
+        const float texels = (float)(part * part);
+        emitter.power = surface.albedo * light.intensity * (received * texels);
+        emitter.power.w = texel * texel * texels *
+                          light_spread(light, surface.position.xyz, slope, surface.normal.xyz) /
+                          M_PI_F;
     }
     emitters[i] = emitter;
 }
@@ -61,36 +64,36 @@ kernel void gather_unblocked(global const Surface* seen, global const Emitter* e
         for (int v = 0; v < gather.samples; ++v)
             for (int u = 0; u < gather.samples; ++u)
                 sum += light_from(emitters[light_sample(gather, u, v)], surface.position.xyz,
-                                  surface.normal.xyz, gather.least_distance);
+                                  surface.normal.xyz);
     a[pixel] = (float4)(sum, 1.0f);
 }
 
 // ---- buffer B: blocked indirect light, at a lower resolution
 
 static int2 b_size(const Gather gather) {
-    return ((int2)(gather.width, gather.height) + gather.scale - 1) / gather.scale;
+    return ((int2)(gather.width, gather.height) + gather.reduce - 1) / gather.reduce;
 }
 
 // The pixel of the picture in the middle of one of B.
 static int b_pixel(const Gather gather, int x, int y) {
-    const int2 p = min((int2)(x, y) * gather.scale + gather.scale / 2,
+    const int2 p = min((int2)(x, y) * gather.reduce + gather.reduce / 2,
                        (int2)(gather.width, gather.height) - 1);
     return p.y * gather.width + p.x;
 }
 
-// The sample of ray number `ray` of a pixel of B. Neighbours in a square of turns * turns take
-// different samples, and all of them together take each sample once.
+// The sample of ray number `ray` of a pixel of B. Neighbours in a square of interleave * interleave take
+// different samples, and all of them together take each sample once (Keller, Heidrich:
+// "Interleaved Sampling", EGWR 2001).
 static int b_sample(const Gather gather, int x, int y, int ray) {
-    const int rays = gather.samples / gather.turns;  // along each axis
-    const int u = (ray % rays) * gather.turns + (x + ray / rays) % gather.turns;
-    const int v = (ray / rays) * gather.turns + (y + ray % rays) % gather.turns;
+    const int rays = gather.samples / gather.interleave;  // along each axis
+    const int u = (ray % rays) * gather.interleave + (x + ray / rays) % gather.interleave;
+    const int v = (ray / rays) * gather.interleave + (y + ray % rays) % gather.interleave;
     return light_sample(gather, u, v);
 }
 
 // Whether a sample lights a pixel of B at all.
 static int b_is_lit(const Surface surface, const Emitter emitter, const Gather gather) {
-    const float3 light =
-        light_from(emitter, surface.position.xyz, surface.normal.xyz, gather.least_distance);
+    const float3 light = light_from(emitter, surface.position.xyz, surface.normal.xyz);
     return surface.position.w > 0.0f && light.x + light.y + light.z > 0.0f;
 }
 
@@ -99,7 +102,8 @@ static int b_is_lit(const Surface surface, const Emitter emitter, const Gather g
 kernel void make_rays(global const Surface* seen, global const Emitter* emitters,
                       const Gather gather, global GridSegment* rays) {
     const int2 size = b_size(gather);
-    const int per_pixel = (gather.samples / gather.turns) * (gather.samples / gather.turns);
+    const int per_pixel =
+        (gather.samples / gather.interleave) * (gather.samples / gather.interleave);
     const int i = (int)get_global_id(0);
     if (i >= size.x * gather.rows * per_pixel) return;
     // Rays of neighbouring pixels to the same sample follow one another.
@@ -120,7 +124,7 @@ kernel void gather_blocked(global const Surface* seen, global const Emitter* emi
                            const Gather gather, global const uint* blocked, global float4* b,
                            volatile global uint* counts) {
     const int2 size = b_size(gather);
-    const int rays = (gather.samples / gather.turns) * (gather.samples / gather.turns);
+    const int rays = (gather.samples / gather.interleave) * (gather.samples / gather.interleave);
     const int place = (int)get_global_id(0);
     if (place >= size.x * gather.rows) return;
     const int x = place % size.x, y = gather.first_row + place / size.x;
@@ -133,22 +137,22 @@ kernel void gather_blocked(global const Surface* seen, global const Emitter* emi
         ++lit;
         if (!blocked[ray * size.x * gather.rows + place]) continue;
         ++hidden;
-        sum += light_from(emitter, surface.position.xyz, surface.normal.xyz, gather.least_distance);
+        sum += light_from(emitter, surface.position.xyz, surface.normal.xyz);
     }
-    b[y * size.x + x] = (float4)(sum * (float)(gather.turns * gather.turns), 1.0f);
+    b[y * size.x + x] = (float4)(sum * (float)(gather.interleave * gather.interleave), 1.0f);
     if (lit) atomic_add(&counts[0], lit);
     if (hidden) atomic_add(&counts[1], hidden);
 }
 
 // ---- the picture
 
-// B between its pixels, over a square that holds every turn equally often, from surfaces like this
-// one only.
+// B between its pixels, over a square that holds every sample equally often, from surfaces like
+// this one only.
 static float3 b_blurred(global const Surface* seen, global const float4* b, const Gather gather,
                         const Surface surface, int x, int y) {
     const int2 size = b_size(gather);
-    const float2 place = ((float2)(x, y) + 0.5f) / (float)gather.scale - 0.5f;
-    const int reach = gather.turns;
+    const float2 place = ((float2)(x, y) + 0.5f) / (float)gather.reduce - 0.5f;
+    const int reach = gather.interleave;
     const int2 first = convert_int2(floor(place)) - reach + 1;
     float3 sum = 0.0f;
     float weights = 0.0f;

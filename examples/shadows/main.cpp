@@ -1,9 +1,6 @@
-// One-bounce indirect light with shadows from a grid of triangle lists.
-#include <cmath>
-#include <cstdio>
-#include <filesystem>
+// One-bounce indirect light, with shadows by rays through a grid of triangle lists.
+#include <algorithm>
 #include <iostream>
-#include <string>
 #include <vector>
 
 #include <cellist/cellist.hpp>
@@ -11,64 +8,123 @@
 #include "command_line.hpp"
 #include "files.hpp"
 #include "frame.hpp"
+#include "heat_map.hpp"
 #include "image.hpp"
-#include "mesh.hpp"
-#include "scene.hpp"
+#include "json_report.hpp"
+#include "number_text.hpp"
+#include "options.hpp"
+#include "report.hpp"
 #include "stopwatch.hpp"
+#include "trade.hpp"
 
 namespace {
 
-struct Options {
-    std::filesystem::path out = "shadows.png";
-    shadows::Settings settings;
-    std::size_t frames = 1;
-    std::string scene = "room";
-    std::string device;
-};
+using shadows::FrameReport;
+using shadows::Options;
+using shadows::Renderer;
+
+// Draws the frames and, where the picture's name has a number, writes each.
+std::vector<double> draw_frames(const cellist::Device& device, const Options& options,
+                                shadows::Scene& scene, Renderer& renderer) {
+    renderer.draw(scene);
+    std::vector<double> frames_ms;
+    for (std::uint32_t frame = 1; frame <= options.frames; ++frame) {
+        if (scene.move) scene.move(scene, options.time_step * (frame - 1));
+        frames_ms.push_back(support::measure_ms(device, [&] { renderer.draw(scene); }));
+        if (options.out.has_number())
+            support::write_image(options.out.of(frame), renderer.picture().download(),
+                                 options.settings.width, options.settings.height);
+    }
+    return frames_ms;
+}
+
+// The median of some frames that wait after every pass.
+std::vector<std::pair<std::string, double>> pass_times(const cellist::Device& device,
+                                                       const Options& options,
+                                                       const shadows::Scene& scene,
+                                                       Renderer& renderer) {
+    std::vector<std::vector<std::pair<std::string, double>>> frames;
+    for (std::uint32_t frame = 0; frame < std::min(options.frames, 5U); ++frame) {
+        shadows::PassTimes times(device);
+        renderer.draw(scene, &times);
+        frames.push_back(times.all());
+    }
+    std::vector<std::pair<std::string, double>> result = frames.front();
+    for (std::size_t pass = 0; pass < result.size(); ++pass) {
+        std::vector<double> ms;
+        for (const auto& frame : frames) ms.push_back(frame[pass].second);
+        result[pass].second = support::median(ms);
+    }
+    return result;
+}
+
+void write_pictures(const Options& options, const shadows::Scene& scene, Renderer& renderer,
+                    FrameReport& report) {
+    const int width = options.settings.width, height = options.settings.height;
+    const auto write = [&](const std::filesystem::path& path, const auto& buffer, int columns,
+                           int rows) {
+        if (!path.empty()) support::write_image(path, buffer.download(), columns, rows);
+    };
+    if (!options.out.has_number()) write(options.out.path(), renderer.picture(), width, height);
+    write(options.out_unblocked, renderer.unblocked(), width, height);
+    write(options.out_a, renderer.a(), width, height);
+    write(options.out_b, renderer.b(), renderer.b_width(), renderer.b_height());
+    if (!options.out_heat.empty()) {
+        const std::vector<cl_uint> passed = renderer.passed_entries(scene);
+        report.most_passed = *std::ranges::max_element(passed);
+        shadows::write_heat_map(options.out_heat, std::vector<double>(passed.begin(), passed.end()),
+                                static_cast<double>(*report.most_passed), width, height);
+    }
+    if (!options.out_error.empty()) {
+        const support::ImageDifference& error = report.accuracy->picture;
+        if (report.accuracy->all_pixels)
+            shadows::write_heat_map(options.out_error, error.errors, error.max_abs_error, width,
+                                    height);
+    }
+}
 
 bool run(const Options& options) {
+    const bool uses_stdout = options.writes_to_stdout();
+    std::ostream& screen = uses_stdout ? std::cerr : std::cout;
     const cellist::Device device = options.device.empty() ? cellist::Device::choose()
                                                           : cellist::Device::choose(options.device);
-    shadows::Scene scene = options.scene == "room" ? shadows::make_room()
-                           : options.scene == "swarm"
-                               ? shadows::make_swarm(100'000)
-                               : shadows::make_mesh_room(support::load_mesh(options.scene));
-    shadows::Renderer renderer(device, scene, options.settings);
-    renderer.draw(scene);
-    support::Least least;
-    for (std::size_t i = 0; i < options.frames; ++i) {
-        if (scene.move) scene.move(scene, 0.02 * double(i));
-        least.add(support::measure_ms(device, [&] { renderer.draw(scene); }));
-    }
-    shadows::PassTimes times(device);
-    renderer.draw(scene, &times);
-    const auto counts = renderer.counts();
-    std::printf("%s: frame %.3f ms, %llu rays, %llu blocked, %llu triangles, %llu entries\n",
-                device.info().name.c_str(), least.ms(),
-                static_cast<unsigned long long>(counts.rays),
-                static_cast<unsigned long long>(counts.blocked),
-                static_cast<unsigned long long>(renderer.grid().triangles().size()),
-                static_cast<unsigned long long>(counts.build.stored));
-    for (const auto& [pass, ms] : times.all()) std::printf("  %-12s %8.3f ms\n", pass.c_str(), ms);
-    support::write_image(options.out, renderer.picture().download(), options.settings.width,
-                         options.settings.height);
-    support::write_image("unblocked.png", renderer.unblocked().download(), options.settings.width,
-                         options.settings.height);
-    support::write_image("a.png", renderer.a().download(), options.settings.width,
-                         options.settings.height);
-    support::write_image("b.png", renderer.b().download(), renderer.b_width(), renderer.b_height());
-    support::write_image("blurred.png", renderer.blurred_b().download(), options.settings.width,
-                         options.settings.height);
-    return true;
+    shadows::Scene scene = make_scene(options);
+    if (options.trade) return shadows::run_trade(device, options, scene, screen);
+
+    Renderer renderer(device, scene, options.settings);
+    FrameReport report;
+    report.options = options;
+    report.device = device.info().name;
+    report.driver = device.info().driver;
+    report.frames_ms = draw_frames(device, options, scene, renderer);
+    report.passes_ms = pass_times(device, options, scene, renderer);
+    if (options.reference) report.accuracy = compare_with_reference(renderer, scene);
+    report.counts = renderer.counts();
+    report.lengths = renderer.grid().entries().lengths();
+    report.cells = renderer.grid().cells();
+    report.scene_triangles = shadows::triangle_count(scene);
+    report.blockers = renderer.grid().triangles().size();
+    report.device_bytes = renderer.device_bytes();
+    write_pictures(options, scene, renderer, report);
+    if (!options.json.empty())
+        support::write_file(options.json, support::dump(to_json(report), 2) + '\n');
+
+    print(screen, report);
+    screen << "picture     " << support::text_of(options.out.path()) << '\n';
+    if (options.arguments.empty())
+        screen << "next        --out-a and --out-b write the indirect light and what is blocked of "
+                  "it;\n            --reference checks every ray; 'swarm' moves; a mesh file takes "
+                  "its place\n";
+    return !report.accuracy || report.accuracy->rays_different == 0;
 }
 
 }  // namespace
 
 int main(int count, char** arguments) {
     return support::run_program("cellist-shadows", [&] {
-        Options options;
-        if (count > 1) options.scene = arguments[1];
-        if (count > 2) options.frames = std::stoul(arguments[2]);
-        return run(options);
+        const Options options = shadows::parse_options(count, arguments);
+        if (options.help_text.empty()) return run(options);
+        std::cout << options.help_text;
+        return true;
     });
 }

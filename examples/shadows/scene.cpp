@@ -137,6 +137,21 @@ Scene empty_room() {
 
 }  // namespace
 
+std::size_t triangle_count(const Scene& scene) {
+    std::size_t count = 0;
+    for (const Instance& instance : scene.instances)
+        count += scene.meshes[instance.mesh].triangles.size();
+    return count;
+}
+
+Light make_parallel_light() {
+    return {.is_spot = false,
+            .position = {-0.6, 0.9, 3},
+            .target = {1.0, -0.4, -0.3},
+            .side = 1.2,
+            .intensity = {8, 8, 7.7F}};
+}
+
 Scene make_room() {
     Scene scene = empty_room();
     scene.meshes.push_back(sphere());

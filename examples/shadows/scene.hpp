@@ -29,6 +29,9 @@ struct Light {
     glm::vec3 intensity{1};     ///< in W/sr, or in W/m2 for parallel light; linear RGB
 };
 
+/// Parallel light that falls into the room of these scenes through its open front.
+[[nodiscard]] Light make_parallel_light();
+
 /// What is drawn, in metres. A scene fits into a box of about 3 m.
 struct Scene {
     std::vector<support::Mesh> meshes;
@@ -42,6 +45,8 @@ struct Scene {
     /// Moves instances, light or camera to where they are after so many seconds; may be empty.
     std::function<void(Scene&, double seconds)> move;
 };
+
+[[nodiscard]] std::size_t triangle_count(const Scene& scene);
 
 /// A room like that of Yang et al., Figure 7: a spot light shines on a wall, and bars stand between
 /// the wall and a sphere that only the wall lights.

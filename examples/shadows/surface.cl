@@ -6,9 +6,9 @@ static inline void raster_emit(RASTER_TARGET, const View* view,
                                global const RasterInstance* instance, uint piece,
                                const RasterFragment* covered) {
     const int pixel = covered->y * view->width + covered->x;
-    if (fragment_key(&placed_meshes[instance->tag], covered, mesh_positions, piece, from) !=
-        keys[pixel])
-        return;
+    const ulong key =
+        fragment_key(&placed_meshes[instance->tag], covered, mesh_positions, piece, from);
+    if (key == SURFACES_NO_KEY || key != keys[pixel]) return;
     const PlacedMesh placed = placed_meshes[instance->tag];
     const float3 position = fragment_position(placed, covered, mesh_positions);
     float3 n = 0.0f;

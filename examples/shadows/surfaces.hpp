@@ -30,7 +30,7 @@ CELLIST_STRUCT(Blocker, instance, triangle);
 struct Emitter {
     cl_float4 position;  ///< and 1
     cl_float4 normal;    ///< and 0
-    cl_float4 power;     ///< reflected, linear RGB; 0 where nothing is lit
+    cl_float4 power;     ///< reflected, linear RGB; and the square of the radius of its disc
 };
 CELLIST_STRUCT(Emitter, position, normal, power);
 
@@ -48,16 +48,14 @@ CELLIST_STRUCT(LightSource, position, axis, right, down, intensity, side, is_spo
 
 /// What the indirect light is computed from.
 struct Gather {
-    cl_int width, height;     ///< of the picture
-    cl_int map_side;          ///< texels of the reflective shadow map along each axis
-    cl_int samples;           ///< of its texels along each axis
-    cl_int scale;             ///< pixels of the picture for each one of buffer B, along each axis
-    cl_int turns;             ///< along each axis: neighbours of B take turns with the samples
-    cl_int first_row, rows;   ///< of B in this batch
-    cl_float bias;            ///< rays begin and end this far above the surfaces
-    cl_float least_distance;  ///< light from nearer points counts as from there
+    cl_int width, height;    ///< of the picture
+    cl_int rsm_side;         ///< texels of the reflective shadow map along each axis
+    cl_int samples;          ///< of its texels along each axis
+    cl_int reduce;           ///< pixels of the picture for each one of buffer B, along each axis
+    cl_int interleave;       ///< along each axis: neighbours in B share out the samples
+    cl_int first_row, rows;  ///< of B in this batch
+    cl_float bias;           ///< rays begin and end this far above the surfaces
 };
-CELLIST_STRUCT(Gather, width, height, map_side, samples, scale, turns, first_row, rows, bias,
-               least_distance);
+CELLIST_STRUCT(Gather, width, height, rsm_side, samples, reduce, interleave, first_row, rows, bias);
 
 }  // namespace shadows
