@@ -87,14 +87,16 @@ void check_rays(const std::vector<grid::GridSegment>& segments, const std::vecto
                 Accuracy& accuracy) {
     const auto end_of = [](const cl_float4& v) { return glm::vec3(v.s[0], v.s[1], v.s[2]); };
     std::vector<char> answers((count + step - 1) / step);  // 0 equal, 1 decided, 2 wrong
+    std::vector<char> lit(answers.size());  // rays to samples without light have no length
     for_each_index(answers.size(), [&](std::size_t i) {
         const grid::GridSegment& segment = segments[i * step];
         const glm::vec3 from = end_of(segment.from), to = end_of(segment.to);
         const bool is_blocked = blocked[i * step] != 0;
-        if (is_blocked == (from != to && occluders.block(from, to))) return;
+        lit[i] = from != to;
+        if (is_blocked == (lit[i] && occluders.block(from, to))) return;
         answers[i] = is_blocked == occluders.block_exactly(from, to) ? 1 : 2;
     });
-    accuracy.rays += answers.size();
+    accuracy.rays += static_cast<std::uint64_t>(std::ranges::count(lit, char{1}));
     accuracy.rays_decided += static_cast<std::uint64_t>(std::ranges::count(answers, char{1}));
     accuracy.rays_different += static_cast<std::uint64_t>(std::ranges::count(answers, char{2}));
 }

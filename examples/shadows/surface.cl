@@ -15,9 +15,12 @@ static inline void raster_emit(RASTER_TARGET, const View* view,
     for (int i = 0; i < 3; ++i) n += covered->weight[i] * vload3(covered->corner[i], mesh_normals);
     n = (float3)(dot(vload3(0, instance->normal_x), n), dot(vload3(0, instance->normal_y), n),
                  dot(vload3(0, instance->normal_z), n));
-    // Both sides are lit: the normal points to the viewer.
+    // Both sides are lit: the normal is of the side that the viewer sees. The plane of the triangle
+    // tells which; at a silhouette, an interpolated normal may point away from the viewer.
     const float3 seen_along = from.is_spot ? position - from.position.xyz : from.axis.xyz;
-    if (dot(n, seen_along) > 0.0f) n = -n;
+    float3 plane = plane_normal(placed, covered, mesh_positions);
+    if (dot(plane, n) < 0.0f) plane = -plane;
+    if (dot(plane, seen_along) > 0.0f) n = -n;
     Surface surface;
     surface.position = (float4)(position, 1.0f);
     surface.normal = (float4)(n * rsqrt(fmax(dot(n, n), 1e-30f)), 0.0f);
