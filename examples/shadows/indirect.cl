@@ -148,19 +148,19 @@ kernel void gather_blocked(global const Surface* seen, global const Emitter* emi
 
 // B between its pixels, over a square that holds every sample equally often, from surfaces like
 // this one only.
-static float3 b_blurred(global const Surface* seen, global const float4* b, const Gather gather,
-                        const Surface surface, int x, int y) {
+static float3 b_blurred(global const Surface* seen, global const float4* a, global const float4* b,
+                        const Gather gather, const Surface surface, int x, int y) {
     const int2 size = b_size(gather);
     const float2 place = ((float2)(x, y) + 0.5f) / (float)gather.reduce - 0.5f;
     const int reach = gather.interleave;
     const int2 first = convert_int2(floor(place)) - reach + 1;
-    float3 sum = 0.0f;
-    float weights = 0.0f;
+    float3 sum = 0.0f, all_light = 1e-20f;
     for (int j = 0; j < 2 * reach; ++j)
         for (int i = 0; i < 2 * reach; ++i) {
             const int2 at = first + (int2)(i, j);
             if (at.x < 0 || at.y < 0 || at.x >= size.x || at.y >= size.y) continue;
-            const Surface other = seen[b_pixel(gather, at.x, at.y)];
+            const int other_pixel = b_pixel(gather, at.x, at.y);
+            const Surface other = seen[other_pixel];
             if (!(other.position.w > 0.0f)) continue;
             const float2 d = fabs(convert_float2(at) - place) / (float)reach;
             const float3 apart = other.position.xyz - surface.position.xyz;
@@ -173,9 +173,9 @@ static float3 b_blurred(global const Surface* seen, global const float4* b, cons
                 fmax(1.0f - d.x, 0.0f) * fmax(1.0f - d.y, 0.0f) * along_4 * along_4 * flat * flat +
                 1e-9f;
             sum += weight * b[at.y * size.x + at.x].xyz;
-            weights += weight;
+            all_light += weight * a[other_pixel].xyz;
         }
-    return weights > 0.0f ? sum / weights : (float3)(0.0f);
+    return a[y * gather.width + x].xyz * (sum / all_light);
 }
 
 // The part of 3 x 3 texels of the shadow map around a point that the light reaches. The point is
@@ -218,7 +218,7 @@ kernel void compose(global const Surface* seen, global const float4* a, global c
             is_lit ? facing * light_fade(light, image) *
                          light_reaches(shadow_map, shadow_side, light, point, normal, gather.bias)
                    : 0.0f;
-        hidden = b_blurred(seen, b, gather, surface, x, y);
+        hidden = b_blurred(seen, a, b, gather, surface, x, y);
         const float3 all_light = a[pixel].xyz;
         const float3 reflected = surface.albedo.xyz / M_PI_F;
         with = reflected * (direct + fmax(all_light - hidden, 0.0f));
