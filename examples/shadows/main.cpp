@@ -110,7 +110,7 @@ bool run(const Options& options) {
         support::write_file(options.json, support::dump(to_json(report), 2) + '\n');
 
     print(screen, report);
-    screen << "picture     " << support::text_of(options.out.path()) << '\n';
+    screen << "written     " << support::text_of(options.out.path()) << '\n';
     if (options.arguments.empty())
         screen << "next        --out-a and --out-b write the indirect light and what is blocked of "
                   "it;\n            --reference checks every ray; 'swarm' moves; a mesh file takes "

@@ -20,7 +20,7 @@ namespace shadows {
 namespace {
 
 constexpr int samples_max = 128, reduce_max = 64, simplify_max = 1024;
-constexpr std::size_t triangles_min = 784, triangles_max = 20'000'000;  // a ring has 784
+constexpr std::size_t triangles_min = 784, triangles_max = 10'000'000;  // a ring has 784
 
 using Text = const std::string&;
 

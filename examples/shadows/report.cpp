@@ -49,12 +49,12 @@ void print_accuracy(std::ostream& out, const Accuracy& accuracy) {
         line(name) << decibels(d.psnr_db) << ", largest error " << fixed(255 * d.max_abs_error, 2)
                    << " / 255";
         if (accuracy.all_pixels) out << ", SSIM " << fixed(d.ssim, 5);
+        out << '\n';
     };
-    difference("picture", accuracy.picture);
-    out << ", against B at full resolution with all samples\n";
+    difference("image", accuracy.picture);
     difference("buffer A", accuracy.a);
-    difference("\nbuffer B", accuracy.b);
-    out << '\n';
+    difference("buffer B", accuracy.b);
+    line("") << "  (against double precision, with B at full resolution and from all samples)\n";
     line("too bright") << grouped(accuracy.leaks) << " of " << counted(accuracy.pixels, "pixel")
                        << " (" << percent(accuracy.leaks, accuracy.pixels) << ") by over 8 / 255\n";
     line("too dark") << grouped(accuracy.over_dark) << " of " << counted(accuracy.pixels, "pixel")
@@ -112,8 +112,8 @@ void print(std::ostream& out, const FrameReport& report) {
     line("frame") << std::right << std::setw(9) << fixed(ms, 2) << " ms, " << fixed(1000 / ms, 1)
                   << " a second (median of " << counted(report.frames_ms.size(), "frame") << ")\n";
     if (report.most_passed)
-        line("heat map") << "up to " << counted(*report.most_passed, "entry")
-                         << " on a ray from the eye\n";
+        line("heat map") << grouped(*report.most_passed)
+                         << " entries at most on a ray from the eye\n";
     if (report.accuracy) print_accuracy(out, *report.accuracy);
 }
 

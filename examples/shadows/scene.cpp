@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -235,7 +236,7 @@ support::Mesh simplify(const support::Mesh& mesh, int cells) {
     std::map<std::tuple<int, int, int>, Merged> cubes;
     std::vector<Merged*> of_vertex;
     for (const glm::vec3& p : mesh.positions) {
-        const glm::ivec3 cube((p - low) / side);
+        const glm::ivec3 cube = glm::min(glm::ivec3((p - low) / side), cells - 1);
         Merged& merged = cubes[{cube.x, cube.y, cube.z}];
         merged.sum += glm::dvec3(p);
         merged.count += 1;
