@@ -281,6 +281,7 @@ Renderer::Renderer(const cellist::Device& device, const Scene& scene, const Sett
       emitters_(device, light_.surfaces().size()),
       a_(device, pixels_of(gather_)),
       b_(device, static_cast<std::size_t>(b_width()) * static_cast<std::size_t>(b_height())),
+      b_all_(device, b_.size()),
       segments_(device,
                 std::min(b_.size(), static_cast<std::size_t>(b_width()) *
                                         static_cast<std::size_t>(batch_rows(gather_, b_width()))) *
@@ -329,8 +330,8 @@ void Renderer::draw(const Scene& scene, PassTimes* times, const TakeRays& take_r
     gather_unblocked_.run(pixels, eye_.surfaces(), emitters_, gather_, a_);
     end("buffer A");
     gather_blocked(times, take_rays);
-    compose_.run(pixels, eye_.surfaces(), a_, b_, light_.keys(), gather_.rsm_side, light, gather_,
-                 picture_, unblocked_, blurred_);
+    compose_.run(pixels, eye_.surfaces(), a_, b_, b_all_, light_.keys(), gather_.rsm_side, light,
+                 gather_, picture_, unblocked_, blurred_);
     end("picture");
 }
 
@@ -350,7 +351,7 @@ void Renderer::gather_blocked(PassTimes* times, const TakeRays& take_rays) {
         if (times) times->end("trace");
         if (take_rays) take_rays(segments_, places * rays_per_pixel(gather_), blocked_);
         gather_blocked_.run(cellist::Range::padded(places, 64), eye_.surfaces(), emitters_, batch,
-                            blocked_, b_, ray_counts_);
+                            blocked_, b_, b_all_, ray_counts_);
         if (times) times->end("buffer B");
     }
 }
@@ -373,8 +374,8 @@ std::vector<cl_uint> Renderer::passed_entries(const Scene& scene) {
 std::uint64_t Renderer::device_bytes() const {
     return geometry_.device_bytes() + eye_.device_bytes() + light_.device_bytes() +
            grid_->device_bytes() + rays_->device_bytes() +
-           raster::bytes_of(placed_meshes_, blockers_, emitters_, a_, b_, segments_, blocked_,
-                            picture_, unblocked_, blurred_);
+           raster::bytes_of(placed_meshes_, blockers_, emitters_, a_, b_, b_all_, segments_,
+                            blocked_, picture_, unblocked_, blurred_);
 }
 
 }  // namespace shadows

@@ -141,6 +141,7 @@ private:
     cellist::Buffer<Emitter> emitters_;
     cellist::Buffer<cl_float4> a_;
     cellist::Buffer<cl_float4> b_;
+    cellist::Buffer<cl_float4> b_all_;  ///< the same, blocked or not
     cellist::Buffer<grid::GridSegment> segments_;
     cellist::Buffer<cl_uint> blocked_;
     cellist::Buffer<cl_uint> ray_counts_;

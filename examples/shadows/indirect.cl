@@ -119,37 +119,43 @@ kernel void make_rays(global const Surface* seen, global const Emitter* emitters
     rays[i] = segment;
 }
 
-// One work-item a pixel of B: the light of the samples that are blocked.
+// One work-item a pixel of B: the light of its samples that are blocked, and of all its samples.
 kernel void gather_blocked(global const Surface* seen, global const Emitter* emitters,
                            const Gather gather, global const uint* blocked, global float4* b,
-                           volatile global uint* counts) {
+                           global float4* b_all, volatile global uint* counts) {
     const int2 size = b_size(gather);
     const int rays = (gather.samples / gather.interleave) * (gather.samples / gather.interleave);
     const int place = (int)get_global_id(0);
     if (place >= size.x * gather.rows) return;
     const int x = place % size.x, y = gather.first_row + place / size.x;
     const Surface surface = seen[b_pixel(gather, x, y)];
-    float3 sum = 0.0f;
+    float3 sum = 0.0f, all_light = 0.0f;
     uint lit = 0, hidden = 0;
     for (int ray = 0; ray < rays; ++ray) {
         const Emitter emitter = emitters[b_sample(gather, x, y, ray)];
         if (!b_is_lit(surface, emitter, gather)) continue;
+        const float3 light = light_from(emitter, surface.position.xyz, surface.normal.xyz);
         ++lit;
+        all_light += light;
         if (!blocked[ray * size.x * gather.rows + place]) continue;
         ++hidden;
-        sum += light_from(emitter, surface.position.xyz, surface.normal.xyz);
+        sum += light;
     }
-    b[y * size.x + x] = (float4)(sum * (float)(gather.interleave * gather.interleave), 1.0f);
+    const float shares = (float)(gather.interleave * gather.interleave);
+    b[y * size.x + x] = (float4)(sum * shares, 1.0f);
+    b_all[y * size.x + x] = (float4)(all_light * shares, 1.0f);
     if (lit) atomic_add(&counts[0], lit);
     if (hidden) atomic_add(&counts[1], hidden);
 }
 
 // ---- the picture
 
-// B between its pixels, over a square that holds every sample equally often, from surfaces like
-// this one only.
-static float3 b_blurred(global const Surface* seen, global const float4* a, global const float4* b,
-                        const Gather gather, const Surface surface, int x, int y) {
+// The part of the light that is blocked between the pixels of B: over a square that holds every
+// sample equally often, from surfaces like this one only. The part is 1 where all is blocked, and
+// changes less than the light across curved surfaces.
+static float3 blocked_part(global const Surface* seen, global const float4* b,
+                           global const float4* b_all, const Gather gather, const Surface surface,
+                           int x, int y) {
     const int2 size = b_size(gather);
     const float2 place = ((float2)(x, y) + 0.5f) / (float)gather.reduce - 0.5f;
     const int reach = gather.interleave;
@@ -159,8 +165,7 @@ static float3 b_blurred(global const Surface* seen, global const float4* a, glob
         for (int i = 0; i < 2 * reach; ++i) {
             const int2 at = first + (int2)(i, j);
             if (at.x < 0 || at.y < 0 || at.x >= size.x || at.y >= size.y) continue;
-            const int other_pixel = b_pixel(gather, at.x, at.y);
-            const Surface other = seen[other_pixel];
+            const Surface other = seen[b_pixel(gather, at.x, at.y)];
             if (!(other.position.w > 0.0f)) continue;
             const float2 d = fabs(convert_float2(at) - place) / (float)reach;
             const float3 apart = other.position.xyz - surface.position.xyz;
@@ -173,9 +178,9 @@ static float3 b_blurred(global const Surface* seen, global const float4* a, glob
                 fmax(1.0f - d.x, 0.0f) * fmax(1.0f - d.y, 0.0f) * along_4 * along_4 * flat * flat +
                 1e-9f;
             sum += weight * b[at.y * size.x + at.x].xyz;
-            all_light += weight * a[other_pixel].xyz;
+            all_light += weight * b_all[at.y * size.x + at.x].xyz;
         }
-    return a[y * gather.width + x].xyz * (sum / all_light);
+    return sum / all_light;
 }
 
 // The part of 3 x 3 texels of the shadow map around a point that the light reaches. The point is
@@ -199,9 +204,9 @@ static float light_reaches(global const ulong* depths, int side, const LightSour
 
 // One work-item a pixel: direct light with a shadow map, and indirect light A - B.
 kernel void compose(global const Surface* seen, global const float4* a, global const float4* b,
-                    global const ulong* shadow_map, int shadow_side, const LightSource light,
-                    const Gather gather, global float4* picture, global float4* unblocked,
-                    global float4* blurred) {
+                    global const float4* b_all, global const ulong* shadow_map, int shadow_side,
+                    const LightSource light, const Gather gather, global float4* picture,
+                    global float4* unblocked, global float4* blurred) {
     const int x = (int)get_global_id(0), y = (int)get_global_id(1);
     if (x >= gather.width || y >= gather.height) return;
     const int pixel = y * gather.width + x;
@@ -218,8 +223,8 @@ kernel void compose(global const Surface* seen, global const float4* a, global c
             is_lit ? facing * light_fade(light, image) *
                          light_reaches(shadow_map, shadow_side, light, point, normal, gather.bias)
                    : 0.0f;
-        hidden = b_blurred(seen, a, b, gather, surface, x, y);
         const float3 all_light = a[pixel].xyz;
+        hidden = all_light * blocked_part(seen, b, b_all, gather, surface, x, y);
         const float3 reflected = surface.albedo.xyz / M_PI_F;
         with = reflected * (direct + fmax(all_light - hidden, 0.0f));
         without = reflected * (direct + all_light);

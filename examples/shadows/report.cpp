@@ -121,7 +121,12 @@ ordered_json scene_json(const Options& options, const std::string& device,
                         const std::string& driver) {
     ordered_json json = support::report_head(schema, "cellist-shadows", options.arguments);
     json["scene"] = support::text_of(options.scene);
+    json["swarm_triangles"] =
+        options.scene == "swarm" ? ordered_json(options.triangles) : ordered_json(nullptr);
     json["light"] = options.parallel_light ? "directional" : "spot";
+    json["light_position"] = nullptr;
+    if (const auto& at = options.light_position) json["light_position"] = {at->x, at->y, at->z};
+    json["time_step_s"] = options.time_step;
     json["device"] = device;
     json["driver"] = driver;
     return json;

@@ -67,8 +67,10 @@ support::Mesh box() {
 support::Mesh sphere() {
     return surface(64, 32, false, [](double u, double v) {
         const double around = 2 * pi * u, down = pi * v;
-        return glm::dvec3(std::sin(down) * std::cos(around), std::cos(down),
-                          -std::sin(down) * std::sin(around));
+        // The poles are single points.
+        const double radius = v == 0 || v == 1 ? 0 : std::sin(down);
+        return glm::dvec3(radius * std::cos(around), std::cos(down), -radius * std::sin(around)) +
+               0.0;
     });
 }
 

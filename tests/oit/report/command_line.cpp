@@ -8,7 +8,7 @@ namespace cellist::test {
 namespace {
 
 TEST_CASE("bad arguments are refused") {
-    const Program program = oit_program();
+    const Program program(CELLIST_OIT_PROGRAM);
     (void)program.folder().write("zero.cl", std::string("a\0b", 3));
     (void)program.folder().write("empty.cl", "");
     (void)program.folder().write("large.cl", std::string((1 << 20) + 1, ' '));
@@ -112,14 +112,14 @@ TEST_CASE("bad arguments are refused") {
 }
 
 TEST_CASE("a machine without OpenCL is reported") {
-    const Program program = oit_program();
+    const Program program(CELLIST_OIT_PROGRAM);
     program.require_refused("knot.obj", "no OpenCL device",
                             "OCL_ICD_VENDORS=/nonexistent OCL_ICD_FILENAMES=");
     program.require_refused("knot.obj", "nosuchdevice", "CELLIST_DEVICE=nosuchdevice");
 }
 
 TEST_CASE("arguments that start with a minus and extreme ones are accepted") {
-    const Program program = oit_program();
+    const Program program(CELLIST_OIT_PROGRAM);
     for (const std::string arguments :
          {"--view -30,-10", "--size 1x1", "--size 3x200", "--alpha 0", "--alpha 1",
           "--layers 4294967295", "--view 0,90 --opaque-floor", "--view 0,-90 --opaque-floor"}) {
@@ -137,7 +137,7 @@ TEST_CASE("arguments that start with a minus and extreme ones are accepted") {
 }
 
 TEST_CASE("scenes with nothing to blend, or with nothing at all, are drawn") {
-    const Program program = oit_program();
+    const Program program(CELLIST_OIT_PROGRAM);
     for (const std::string scene : {"extreme-nothing", "extreme-opaque", "extreme-nan"}) {
         INFO(scene);
         const ProgramResult result =
@@ -149,7 +149,7 @@ TEST_CASE("scenes with nothing to blend, or with nothing at all, are drawn") {
 }
 
 TEST_CASE("the user's function is read from a file, and its failures are shown") {
-    const Program program = oit_program();
+    const Program program(CELLIST_OIT_PROGRAM);
     const std::string head =
         "static void blend(const OitFragment* fragment, float distance, float3* colour,\n"
         "                  float3* transmittance) {\n";
@@ -174,7 +174,7 @@ TEST_CASE("the user's function is read from a file, and its failures are shown")
 }
 
 TEST_CASE("slots are not fewer than the layers that are blended") {
-    const Program program = oit_program();
+    const Program program(CELLIST_OIT_PROGRAM);
     for (const std::string layers : {"2", "4", "all"})
         CHECK(program.run("knot.obj --size 40x30 --frames 1 --method kbuffer:4 --layers " + layers)
                   .exit_code == 0);

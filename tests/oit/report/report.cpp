@@ -9,7 +9,7 @@ namespace cellist::test {
 namespace {
 
 TEST_CASE("the picture, the screen and the JSON agree, and pictures are equal in every run") {
-    const Program program = oit_program();
+    const Program program(CELLIST_OIT_PROGRAM);
     const std::string arguments =
         "knot.obj --size 160x90 --opaque-floor --reference --frames 1 --json a.json --out ";
     const ProgramResult result = program.run(arguments + "a.png");
@@ -34,7 +34,7 @@ TEST_CASE("the picture, the screen and the JSON agree, and pictures are equal in
 }
 
 TEST_CASE("fewer layers are compared with all, and with as many") {
-    const Program program = oit_program();
+    const Program program(CELLIST_OIT_PROGRAM);
     const auto metrics = [&](const std::string& arguments) {
         const ProgramResult result = program.run(
             "knot.obj --size 160x90 --frames 1 --reference --out a.png --json a.json " + arguments);
@@ -59,7 +59,7 @@ TEST_CASE("fewer layers are compared with all, and with as many") {
 }
 
 TEST_CASE("the screen tells only what the method has") {
-    const Program program = oit_program();
+    const Program program(CELLIST_OIT_PROGRAM);
     const std::string run = "knot.obj --size 64x48 --frames 1 --reference --json a.json ";
     const std::string lists = program.run(run).out;
     CHECK(contains(lists, "nodes of 16 bytes"));
@@ -78,7 +78,7 @@ TEST_CASE("the screen tells only what the method has") {
 }
 
 TEST_CASE("without a reference, its metrics are null") {
-    const Program program = oit_program();
+    const Program program(CELLIST_OIT_PROGRAM);
     REQUIRE(program.run("knot.obj --size 32x32 --frames 1 --json a.json --out a.png").exit_code ==
             0);
     const std::string json = read_file(program.folder() / "a.json");

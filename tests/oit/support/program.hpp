@@ -58,6 +58,4 @@ private:
     std::filesystem::path mesh_;
 };
 
-inline Program oit_program() { return Program(CELLIST_OIT_PROGRAM); }
-
 }  // namespace cellist::test
