@@ -2,20 +2,51 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <thread>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "grid/embree.hpp"
+#include "grid/exact.hpp"
 #include "image.hpp"
-#include "occluders.hpp"
 
 namespace shadows {
 namespace {
 
 // Triangles that the CPU may ask, so that a reference takes minutes at most.
 constexpr double reference_work = 2e10;
+
+// Triangles that block segments, on the CPU: by Embree if there is one, else by every triangle.
+class Occluders {
+public:
+    explicit Occluders(std::vector<grid::GridTriangle> triangles)
+        : triangles_(std::move(triangles)) {
+        if (grid::has_embree() && !triangles_.empty())
+            tree_ = std::make_unique<grid::EmbreeTriangles>(triangles_);
+    }
+    [[nodiscard]] static std::string name() {
+        return grid::has_embree() ? grid::EmbreeTriangles::name() : "every triangle";
+    }
+    // Of a segment, in triangles.
+    [[nodiscard]] double cost() const {
+        constexpr double cost_of_tree = 50;
+        return tree_ ? cost_of_tree : static_cast<double>(triangles_.size() + 1);
+    }
+    // Embree may be wrong where the segment grazes a triangle.
+    [[nodiscard]] bool block(const glm::vec3& from, const glm::vec3& to) const {
+        return tree_ ? tree_->meets_any(from, to) : block_exactly(from, to);
+    }
+    [[nodiscard]] bool block_exactly(const glm::vec3& from, const glm::vec3& to) const {
+        return grid::meets_any(from, to, triangles_);
+    }
+
+private:
+    std::vector<grid::GridTriangle> triangles_;
+    std::unique_ptr<grid::EmbreeTriangles> tree_;
+};
 
 std::size_t step_for(double segments, const Occluders& occluders) {
     return static_cast<std::size_t>(

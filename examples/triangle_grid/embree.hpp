@@ -9,9 +9,6 @@
 
 namespace triangle_grid {
 
-/// Whether this build has Embree (libembree-dev).
-[[nodiscard]] bool has_embree();
-
 struct EmbreeAnswers {
     std::vector<std::uint8_t> hits;  ///< 1 where a segment meets a triangle
     double build_ms, trace_ms;

@@ -13,6 +13,7 @@
 #include "command_line.hpp"
 #include "embree.hpp"
 #include "files.hpp"
+#include "grid/embree.hpp"
 #include "grid/exact.hpp"
 #include "grid/rays.hpp"
 #include "grid/triangle_grid.hpp"
@@ -56,7 +57,7 @@ Options parse_options(int count, const char* const* arguments) {
         "Embree",
         "N|all|embree", [&](const std::string& text) {
             options.embree = text == "embree";
-            if (options.embree && !triangle_grid::has_embree())
+            if (options.embree && !grid::has_embree())
                 throw support::InputError(
                     "--check embree: this build has no Embree; install libembree-dev and build "
                     "again");
@@ -118,7 +119,7 @@ bool check_with_embree(const std::vector<triangle_grid::Segment>& segments,
         const bool is_hit = hits[i] != 0;
         if (is_hit == (embree.hits[i] != 0)) continue;
         ++different;
-        if (is_hit != triangle_grid::meets_any(segments[i], triangles)) ++wrong;
+        if (is_hit != grid::meets_any(segments[i].from, segments[i].to, triangles)) ++wrong;
     }
     const double embree_ms = embree.build_ms + embree.trace_ms;
     std::fprintf(screen,
