@@ -320,19 +320,19 @@ void Renderer::draw(const Scene& scene, PassTimes* times, const TakeRays& take_r
     build_ = grid_->build();
     end("grid");
     eye_.draw(nearest_, surface_, clear_, geometry_, placed_meshes_, source_of(scene));
-    end("g-buffer");
+    end("g_buffer");
     light_.draw(nearest_, surface_, clear_, geometry_, placed_meshes_, light);
     make_emitters_.run(cellist::Range::padded(emitters_.size(), 64), light_.surfaces(), light,
                        gather_, emitters_);
-    end("shadow map");
+    end("shadow_map");
 
     const cellist::Range pixels((gather_.width + 15) / 16 * 16, (gather_.height + 3) / 4 * 4);
     gather_unblocked_.run(pixels, eye_.surfaces(), emitters_, gather_, a_);
-    end("buffer A");
+    end("buffer_a");
     gather_blocked(times, take_rays);
     compose_.run(pixels, eye_.surfaces(), a_, b_, b_all_, light_.keys(), gather_.rsm_side, light,
                  gather_, picture_, unblocked_, blurred_);
-    end("picture");
+    end("compose");
 }
 
 // Traces the rays of B in batches of rows.
@@ -346,13 +346,13 @@ void Renderer::gather_blocked(PassTimes* times, const TakeRays& take_rays) {
             static_cast<std::size_t>(b_width()) * static_cast<std::size_t>(batch.rows);
         make_rays_.run(cellist::Range::padded(places * rays_per_pixel(gather_), 64),
                        eye_.surfaces(), emitters_, batch, segments_);
-        if (times) times->end("rays of B");
+        if (times) times->end("make_rays");
         rays_->any_hits(segments_, places * rays_per_pixel(gather_), blocked_);
         if (times) times->end("trace");
         if (take_rays) take_rays(segments_, places * rays_per_pixel(gather_), blocked_);
         gather_blocked_.run(cellist::Range::padded(places, 64), eye_.surfaces(), emitters_, batch,
                             blocked_, b_, b_all_, ray_counts_);
-        if (times) times->end("buffer B");
+        if (times) times->end("buffer_b");
     }
 }
 

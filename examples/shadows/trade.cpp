@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <iomanip>
+#include <map>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -20,16 +21,17 @@ namespace {
 struct TradeRow {
     std::string change;  ///< of the options
     Settings settings;
-    double ms = 0;
+    double ms = 0;  ///< of the fastest frame
     std::uint64_t rays = 0;
-    support::ImageDifference difference;
+    support::ImageDifference of_b;    ///< against B at full resolution from all samples
+    support::ImageDifference of_all;  ///< the same, with the most samples
 };
 
 bool divides(int part, int whole) { return part >= 1 && whole % part == 0; }
 
 // The settings of the command line, and others that differ in one of them.
 std::vector<TradeRow> rows_around(const Settings& base) {
-    std::vector<TradeRow> rows{{"as given", base, 0, 0, {}}};
+    std::vector<TradeRow> rows{{"as given", base, 0, 0, {}, {}}};
     const auto add = [&](const std::string& option, int Settings::*setting,
                          std::initializer_list<int> values) {
         for (const int value : values) {
@@ -38,7 +40,7 @@ std::vector<TradeRow> rows_around(const Settings& base) {
             if (value == base.*setting || !divides(changed.samples, changed.rsm) ||
                 !divides(changed.interleave, changed.samples))
                 continue;
-            rows.push_back({option + " " + std::to_string(value), changed, 0, 0, {}});
+            rows.push_back({option + " " + std::to_string(value), changed, 0, 0, {}, {}});
         }
     };
     add("--reduce", &Settings::reduce, {1, 2, 4, 8});
@@ -49,17 +51,11 @@ std::vector<TradeRow> rows_around(const Settings& base) {
     return rows;
 }
 
-// Everything that blocks, everywhere, from more samples.
-Settings all_light(const Settings& base) {
-    Settings settings = base;
+// The picture with B at full resolution, and a ray to every sample.
+std::vector<glm::dvec3> full_picture(const cellist::Device& device, const Scene& scene,
+                                     Settings settings) {
     settings.reduce = settings.interleave = 1;
     settings.simplify = 0;
-    if (divides(2 * base.samples, base.rsm)) settings.samples = 2 * base.samples;
-    return settings;
-}
-
-std::vector<glm::dvec3> all_light_picture(const cellist::Device& device, const Scene& scene,
-                                          const Settings& settings) {
     Renderer renderer(device, scene, settings);
     renderer.draw(scene);
     std::vector<glm::dvec3> picture;
@@ -73,9 +69,10 @@ nlohmann::ordered_json json_of(const TradeRow& row) {
     json.update(settings_json(row.settings));
     json["ms"] = row.ms;
     json["rays"] = row.rays;
-    json["psnr_db"] = support::finite_or_null(row.difference.psnr_db);
-    json["ssim"] = row.difference.ssim;
-    json["max_abs_error"] = row.difference.max_abs_error;
+    json["psnr_db"] = support::finite_or_null(row.of_b.psnr_db);
+    json["ssim"] = row.of_b.ssim;
+    json["max_abs_error"] = row.of_b.max_abs_error;
+    json["psnr_of_all_db"] = support::finite_or_null(row.of_all.psnr_db);
     return json;
 }
 
@@ -83,43 +80,52 @@ nlohmann::ordered_json json_of(const TradeRow& row) {
 
 bool run_trade(const cellist::Device& device, const Options& options, const Scene& scene,
                std::ostream& out) {
-    const Settings reference_settings = all_light(options.settings);
     std::vector<TradeRow> rows = rows_around(options.settings);
+    std::map<int, std::vector<glm::dvec3>> references;  // by samples
+    const auto width = static_cast<std::size_t>(options.settings.width);
+    const auto height = static_cast<std::size_t>(options.settings.height);
     {
         support::Progress progress("settings");
-        const std::vector<glm::dvec3> reference =
-            all_light_picture(device, scene, reference_settings);
+        for (const TradeRow& row : rows) {
+            std::vector<glm::dvec3>& reference = references[row.settings.samples];
+            if (reference.empty()) reference = full_picture(device, scene, row.settings);
+        }
         for (std::size_t i = 0; i < rows.size(); ++i) {
             TradeRow& row = rows[i];
             progress.update(static_cast<double>(i + 1) / static_cast<double>(rows.size() + 1));
             Renderer renderer(device, scene, row.settings);
             renderer.draw(scene);
-            std::vector<double> frames_ms;
+            support::Least least;
             for (std::uint32_t frame = 0; frame < options.frames; ++frame)
-                frames_ms.push_back(support::measure_ms(device, [&] { renderer.draw(scene); }));
-            row.ms = support::median(frames_ms);
+                least.add(support::measure_ms(device, [&] { renderer.draw(scene); }));
+            row.ms = least.ms();
             row.rays = renderer.counts().rays;
-            row.difference = support::difference(renderer.picture().download(), reference,
-                                                 static_cast<std::size_t>(options.settings.width),
-                                                 static_cast<std::size_t>(options.settings.height));
+            const std::vector<cl_float4> picture = renderer.picture().download();
+            row.of_b =
+                support::difference(picture, references.at(row.settings.samples), width, height);
+            row.of_all = support::difference(picture, references.rbegin()->second, width, height);
         }
     }
 
-    out << "Error against --reduce 1 --interleave 1 --samples " << reference_settings.samples
-        << ", on " << device.info().name << ":\n\n"
-        << "options             ms a frame        rays   PSNR dB      SSIM  largest error\n";
+    const int most_samples = references.rbegin()->first;
+    const auto decibels = [](const support::ImageDifference& difference) {
+        return std::isfinite(difference.psnr_db) ? support::fixed(difference.psnr_db, 1) : "equal";
+    };
+    out << "PSNR of the picture on " << device.info().name
+        << ". B: against B at full resolution with a ray to\nevery sample. All: the same with "
+        << most_samples << " x " << most_samples << " samples.\n\n"
+        << "options           ms a frame        rays      B dB    all dB  SSIM of B  largest "
+           "error\n";
     for (const TradeRow& row : rows)
-        out << std::left << std::setw(18) << row.change << std::right << std::setw(12)
+        out << std::left << std::setw(16) << row.change << std::right << std::setw(12)
             << support::fixed(row.ms, 2) << std::setw(12) << support::grouped(row.rays)
-            << std::setw(10)
-            << (std::isfinite(row.difference.psnr_db) ? support::fixed(row.difference.psnr_db, 1)
-                                                      : "equal")
-            << std::setw(10) << support::fixed(row.difference.ssim, 4) << std::setw(9)
-            << support::fixed(255 * row.difference.max_abs_error, 1) << " / 255\n";
+            << std::setw(10) << decibels(row.of_b) << std::setw(10) << decibels(row.of_all)
+            << std::setw(11) << support::fixed(row.of_b.ssim, 4) << std::setw(9)
+            << support::fixed(255 * row.of_b.max_abs_error, 1) << " / 255\n";
 
     if (!options.json.empty()) {
         nlohmann::ordered_json json = scene_json(options, device.info().name, device.info().driver);
-        json["reference"] = settings_json(reference_settings);
+        json["most_samples"] = most_samples;
         json["settings"] = nlohmann::ordered_json::array();
         for (const TradeRow& row : rows) json["settings"].push_back(json_of(row));
         support::write_file(options.json, support::dump(json, 2) + '\n');

@@ -8,8 +8,8 @@
 
 namespace shadows {
 
-/// Changes one setting at a time, and prints the error against all light at full resolution beside
-/// the time of a frame. Writes options.json if it is not empty. Returns true.
+/// Changes one setting at a time, and prints the error against B at full resolution beside the
+/// time of a frame. Writes options.json if it is not empty. Returns true.
 bool run_trade(const cellist::Device& device, const Options& options, const Scene& scene,
                std::ostream& out);
 
