@@ -184,13 +184,15 @@ static float3 blocked_part(global const Surface* seen, global const float4* b,
 }
 
 // The part of 3 x 3 texels of the shadow map around a point that the light reaches. The point is
-// lifted by the size of these texels, so that a surface does not shade itself.
+// lifted by the size of these texels, and moved towards the light, so that a surface shades neither
+// itself nor another one where they meet.
 static float light_reaches(global const ulong* depths, int side, const LightSource light,
                            float3 point, float3 normal, float bias) {
     const float distance = light.is_spot ? dot(point - light.position.xyz, light.axis.xyz) : 1.0f;
-    point += normal * (bias + 2.5f * light.side * distance / (float)side);
+    const float texel = light.side * distance / (float)side;
+    point += normal * (bias + 2.5f * texel);
     const float2 image = light_image(light, point) * (float)side - 0.5f;
-    const float depth = dot(point - light.position.xyz, light.axis.xyz) - bias;
+    const float depth = dot(point - light.position.xyz, light.axis.xyz) - bias - 2.0f * texel;
     const int2 first = convert_int2(floor(image + 0.5f)) - 1;
     int reached = 0;
     for (int j = 0; j < 3; ++j)
