@@ -10,6 +10,7 @@
 #include "frame.hpp"
 #include "heat_map.hpp"
 #include "image.hpp"
+#include "input_error.hpp"
 #include "json_report.hpp"
 #include "number_text.hpp"
 #include "options.hpp"
@@ -77,9 +78,10 @@ void write_pictures(const Options& options, const shadows::Scene& scene, Rendere
     }
     if (!options.out_error.empty()) {
         const support::ImageDifference& error = report.accuracy->picture;
-        if (report.accuracy->all_pixels)
-            shadows::write_heat_map(options.out_error, error.errors, error.max_abs_error, width,
-                                    height);
+        if (!report.accuracy->all_pixels)
+            throw support::InputError("--out-error needs Embree for this scene (libembree-dev)");
+        shadows::write_heat_map(options.out_error, error.errors, error.max_abs_error, width,
+                                height);
     }
 }
 
