@@ -210,7 +210,7 @@ Scene make_mesh_room(support::Mesh mesh) {
     Scene scene = empty_room();
     support::fit_to_unit_sphere(mesh);
     double lowest = 0;
-    for (const glm::vec3& p : mesh.positions) lowest = std::min(lowest, double{p.y});
+    for (const glm::vec3& p : mesh.positions) lowest = std::min(lowest, static_cast<double>(p.y));
     constexpr double size = 0.85;
     scene.meshes.push_back(std::move(mesh));
     scene.instances.push_back(
