@@ -125,6 +125,13 @@ void check(const support::CommandLine& line, const Options& options) {
         {"--triangles", !is_swarm, "--triangles is for the scene swarm"},
         {"--time-step", !is_swarm, "--time-step is for the scene swarm: nothing else moves"},
         {"--reference", options.trade, "--trade compares pictures itself: leave out --reference"},
+        {"--out", options.trade, "--trade writes no picture: leave out --out"},
+        {"--out-unblocked", options.trade, "--trade writes no picture: leave out --out-unblocked"},
+        {"--out-a", options.trade, "--trade writes no picture: leave out --out-a"},
+        {"--out-b", options.trade, "--trade writes no picture: leave out --out-b"},
+        {"--out-heat", options.trade, "--trade writes no picture: leave out --out-heat"},
+        {"--out-error", options.trade, "--trade writes no picture: leave out --out-error"},
+        {"--time-step", options.trade, "--trade draws one moment: leave out --time-step"},
     };
     line.refuse_idle(table);
     check_settings(options.settings);

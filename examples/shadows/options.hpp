@@ -23,7 +23,7 @@ struct Options {
     std::optional<glm::dvec3> light_position;
     Settings settings;
     std::uint32_t frames = 5;
-    double time_step = 1.0 / 30;  ///< in seconds
+    double time_step = 0.04;  ///< in seconds
     support::PictureName out{"shadows.png"};
     std::filesystem::path out_unblocked, out_a, out_b, out_heat, out_error, json;
     bool reference = false;

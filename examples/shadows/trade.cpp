@@ -21,17 +21,17 @@ namespace {
 struct TradeRow {
     std::string change;  ///< of the options
     Settings settings;
-    double ms = 0;  ///< of the fastest frame
+    support::Least time = {};
     std::uint64_t rays = 0;
-    support::ImageDifference of_b;    ///< against B at full resolution from all samples
-    support::ImageDifference of_all;  ///< the same, with the most samples
+    support::ImageDifference of_b = {};    ///< against B at full resolution from all samples
+    support::ImageDifference of_all = {};  ///< the same, with the most samples
 };
 
 bool divides(int part, int whole) { return part >= 1 && whole % part == 0; }
 
 // The settings of the command line, and others that differ in one of them.
 std::vector<TradeRow> rows_around(const Settings& base) {
-    std::vector<TradeRow> rows{{"as given", base, 0, 0, {}, {}}};
+    std::vector<TradeRow> rows{{"as given", base}};
     const auto add = [&](const std::string& option, int Settings::*setting,
                          std::initializer_list<int> values) {
         for (const int value : values) {
@@ -40,7 +40,7 @@ std::vector<TradeRow> rows_around(const Settings& base) {
             if (value == base.*setting || !divides(changed.samples, changed.rsm) ||
                 !divides(changed.interleave, changed.samples))
                 continue;
-            rows.push_back({option + " " + std::to_string(value), changed, 0, 0, {}, {}});
+            rows.push_back({option + " " + std::to_string(value), changed});
         }
     };
     add("--reduce", &Settings::reduce, {1, 2, 4, 8});
@@ -67,7 +67,7 @@ std::vector<glm::dvec3> full_picture(const cellist::Device& device, const Scene&
 nlohmann::ordered_json json_of(const TradeRow& row) {
     nlohmann::ordered_json json{{"options", row.change}};
     json.update(settings_json(row.settings));
-    json["ms"] = row.ms;
+    json["ms"] = row.time.ms();
     json["rays"] = row.rays;
     json["psnr_db"] = support::finite_or_null(row.of_b.psnr_db);
     json["ssim"] = row.of_b.ssim;
@@ -90,21 +90,23 @@ bool run_trade(const cellist::Device& device, const Options& options, const Scen
             std::vector<glm::dvec3>& reference = references[row.settings.samples];
             if (reference.empty()) reference = full_picture(device, scene, row.settings);
         }
-        for (std::size_t i = 0; i < rows.size(); ++i) {
-            TradeRow& row = rows[i];
-            progress.update(static_cast<double>(i + 1) / static_cast<double>(rows.size() + 1));
-            Renderer renderer(device, scene, row.settings);
-            renderer.draw(scene);
-            support::Least least;
-            for (std::uint32_t frame = 0; frame < options.frames; ++frame)
-                least.add(support::measure_ms(device, [&] { renderer.draw(scene); }));
-            row.ms = least.ms();
-            row.rays = renderer.counts().rays;
-            const std::vector<cl_float4> picture = renderer.picture().download();
-            row.of_b =
-                support::difference(picture, references.at(row.settings.samples), width, height);
-            row.of_all = support::difference(picture, references.rbegin()->second, width, height);
-        }
+        // In rounds, so that a time in which the machine does other work spoils no row alone.
+        for (std::uint32_t round = 0; round < options.frames; ++round)
+            for (std::size_t i = 0; i < rows.size(); ++i) {
+                TradeRow& row = rows[i];
+                progress.update(static_cast<double>(round * rows.size() + i) /
+                                static_cast<double>(options.frames * rows.size()));
+                Renderer renderer(device, scene, row.settings);
+                renderer.draw(scene);
+                row.time.add(support::measure_ms(device, [&] { renderer.draw(scene); }));
+                if (round > 0) continue;
+                row.rays = renderer.counts().rays;
+                const std::vector<cl_float4> picture = renderer.picture().download();
+                row.of_b = support::difference(picture, references.at(row.settings.samples), width,
+                                               height);
+                row.of_all =
+                    support::difference(picture, references.rbegin()->second, width, height);
+            }
     }
 
     const int most_samples = references.rbegin()->first;
@@ -118,7 +120,7 @@ bool run_trade(const cellist::Device& device, const Options& options, const Scen
            "error\n";
     for (const TradeRow& row : rows)
         out << std::left << std::setw(16) << row.change << std::right << std::setw(12)
-            << support::fixed(row.ms, 2) << std::setw(12) << support::grouped(row.rays)
+            << support::fixed(row.time.ms(), 2) << std::setw(12) << support::grouped(row.rays)
             << std::setw(10) << decibels(row.of_b) << std::setw(10) << decibels(row.of_all)
             << std::setw(11) << support::fixed(row.of_b.ssim, 4) << std::setw(9)
             << support::fixed(255 * row.of_b.max_abs_error, 1) << " / 255\n";

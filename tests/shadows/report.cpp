@@ -99,6 +99,7 @@ TEST_CASE("options that cannot be used are refused in one line") {
         {"--out a.png --out-b a.png", "the same file"},
         {"knot.obj --out-a knot.obj", "the same file"},
         {"--trade --reference", "--trade"},
+        {"--trade --out-a a.png", "--trade"},
         {"--storage none", "none"},
         {"--width 16384 --height 16384", "limit"},
     };
