@@ -103,7 +103,7 @@ void fill(const char* name, Storage storage, const Ranges& over, std::uint64_t c
     const BuildReport report = lists.build(kernel, over.range, run, each);
     const std::uint64_t attempted = std::uint64_t{over.items} * each;
     std::uint64_t stored = std::min(attempted, capacity);
-    if (storage == Storage::fixed) {
+    if (has_slots(storage)) {
         std::vector<std::uint64_t> demand(50);
         for (cl_uint i = 0; i < over.items; ++i) demand[cell_of(i, run, 50)] += each;
         stored = 0;

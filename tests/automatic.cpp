@@ -74,7 +74,8 @@ TEST_CASE("lists are complete in every build of a trial and after it") {
 }
 
 TEST_CASE("the other storages say that they were asked for") {
-    CELLIST_EACH_STORAGE(storage);
+    const Storage storage = GENERATE(from_range(detail::choices));
+    INFO(name_of(storage));
     const Lists<Item> lists(device(), {10}, {.storage = storage});
     REQUIRE(lists.storage() == storage);
     REQUIRE(tuner_of(lists) == nullptr);
@@ -111,7 +112,8 @@ TEST_CASE("records that grow in number from build to build are all stored") {
 }
 
 TEST_CASE("every storage serves when it is chosen, and clear() empties it") {
-    CELLIST_EACH_STORAGE(storage);
+    const Storage storage = GENERATE(from_range(detail::choices));
+    INFO(name_of(storage));
     CELLIST_RANDOM(random, 273u);
     const Inserts<Item> inserts = random_inserts(4096, 50, random);
     Lists<Item> lists(device(), {50}, automatic);
@@ -354,7 +356,8 @@ TEST_CASE("sizes that no storage can have are refused") {
 
 TEST_CASE(
     "asynchronous builds, several containers and slices take what is chosen and try nothing") {
-    CELLIST_EACH_STORAGE(storage);
+    const Storage storage = GENERATE(from_range(detail::choices));
+    INFO(name_of(storage));
     CELLIST_RANDOM(random, 280u);
     const Inserts<Item> inserts = random_inserts(4096, 50, random);
     Lists<Item> lists(device(), {50}, automatic), other(device(), {50}, automatic);
@@ -398,7 +401,8 @@ TEST_CASE(
 }
 
 TEST_CASE("slices fit the budget") {
-    CELLIST_EACH_STORAGE(storage);
+    const Storage storage = GENERATE(from_range(detail::choices));
+    INFO(name_of(storage));
     CELLIST_RANDOM(random, 281u);
     const Inserts<Item> inserts = random_inserts(4096, 50, random);
     Lists<Item> lists(

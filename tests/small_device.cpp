@@ -21,8 +21,8 @@ TEST_CASE("small work-groups sort, pack and validate") {
     for (cl_uint i = 0; i < 700; ++i)
         inserts.add(i % 7 < 5 ? 17 : 4000, {static_cast<cl_float>(i % 50), 3000 + i});
     ListsOptions options{.storage = storage};
-    if (storage == Storage::fixed) options.slots = 10;
-    if (storage == Storage::fixed) inserts = random_inserts(3000, 5000, random);
+    if (has_slots(storage)) options.slots = 10;
+    if (has_slots(storage)) inserts = random_inserts(3000, 5000, random);
     Lists<Item> lists(small, {5000}, options);
     sort_as_on(lists, CL_DEVICE_TYPE_GPU);
     const Oracle<Item> oracle = oracle_of(inserts, 5000);

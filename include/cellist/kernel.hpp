@@ -27,16 +27,16 @@ struct Source {
 /// Kernel throws Error.
 ///
 /// A device caches the last 128 programs, by source, types and options. It does not cache a source
-/// that includes the user's own files, by #include or by the option "-include". Each Kernel builds
+/// that includes the user's own files, by #include or by the option "-include". Each Kernel compiles
 /// such a source again from the current files. `#include <cellist/lists.clh>` and
 /// `<cellist/glm.clh>` need no path and do not prevent caching.
 class Kernel {
 public:
-    /// Builds `code` and takes the kernel `name` from it. `uses` names the types that the source
+    /// Compiles `code` and takes the kernel `name` from it. `uses` names the types that the source
     /// may use: containers, and cellist::type<T> for other adapted structs. Blocks while it
     /// compiles.
     ///
-    /// Throws OpenClError with the compiler's log if the source does not build or has no such
+    /// Throws OpenClError with the compiler's log if the source does not compile or has no such
     /// kernel, if the device lays a struct out differently, or if OpenCL C reserves the name of a
     /// struct or member. Throws Error if the source is empty, if two structs have the same name, or
     /// if a struct has doubles and the device does not.
@@ -84,7 +84,7 @@ public:
     /// @private
     Kernel(std::shared_ptr<detail::DeviceState> device, const Source& code, const std::string& name,
            const detail::Definitions& definitions);
-    /// @private Without an event, it takes less time.
+    /// @private Faster without an event.
     void enqueue(const Range& range, const detail::Arguments& arguments,
                  cl::Event* event = nullptr);
 

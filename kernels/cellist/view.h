@@ -40,8 +40,8 @@
 #define CELLIST_SELECTION_PASS 32u
 #define CELLIST_PARTITIONED 64u
 
-// Every storage: ROW(name, its modes, a, b). <name>.clh describes the heads and nodes of the modes;
-// storage_<name>.cpp is the host's part.
+// Every storage: ROW(name, its modes, a, b), where a and b are passed on. <name>.clh describes the
+// heads and nodes of the modes; storage_<name>.cpp is the host's part.
 #define CELLIST_STORAGES(ROW, a, b)                                                                \
     ROW(linked, CELLIST_LINKED, a, b)                                                              \
     ROW(counted, CELLIST_COUNTING | CELLIST_CONTIGUOUS | CELLIST_PARTITIONED, a, b)                \

@@ -123,8 +123,8 @@ std::string macro_hint(const std::string& options, const detail::Definitions& de
     return hint;
 }
 
-cl::Program build(detail::DeviceState& device, const Source& source,
-                  const detail::Definitions& definitions, cl_uint modes) {
+cl::Program compile(detail::DeviceState& device, const Source& source,
+                    const detail::Definitions& definitions, cl_uint modes) {
     if (source.text.empty()) throw Error("the source of " + source.file_name + " is empty");
     if (definitions.needs_fp64 && !device.info.fp64)
         throw Error("a struct has members of type double, which " + device.info.name +
@@ -250,10 +250,10 @@ struct Kernel::Impl {
         });
     }
 
-    /// The kernel for containers of these modes; builds it the first time.
+    /// The kernel for containers of these modes; compiles it the first time.
     Variant& variant(cl_uint modes) {
         if (const auto known = variants.find(modes); known != variants.end()) return known->second;
-        const cl::Program program = build(*device, source, definitions, modes);
+        const cl::Program program = compile(*device, source, definitions, modes);
         return opencl([&]() -> Variant& {
             Variant made;
             made.kernel = kernel_called(program, name, source);

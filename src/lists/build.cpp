@@ -85,6 +85,7 @@ std::shared_ptr<Build> Build::start(std::vector<ListsCore*> containers,
     build->reports_.resize(build->containers_.size());
     build->enter(Phase::building);
     try {
+        // Through ContainerStorage: Storage::automatic may change the storage here.
         for (ListsCore* container : build->containers_) container->storage().start();
         build->enqueue_passes();
     } catch (...) {

@@ -199,7 +199,7 @@ raster::Pass FragmentSource::opaque_pass(std::string_view source,
 }
 
 std::string FragmentSource::pass_text(std::string_view source) const {
-    return with_defines({"#define OIT_PASS", kernels::shading_clh, kernels::fragment_clh, source,
+    return with_defines({"#define OIT_STORES", kernels::shading_clh, kernels::fragment_clh, source,
                          kernels::surface_clh});
 }
 

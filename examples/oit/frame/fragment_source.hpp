@@ -56,7 +56,7 @@ public:
     void set_slice(const cellist::Slice& slice);
 
     /// The kernels of a pass: `source` defines OIT_TARGET, OIT_TARGET_PASS and oit_store (see
-    /// surface.clh), where OIT_PASS is defined. `uses` are containers and types, as in
+    /// surface.clh), where OIT_STORES is defined. `uses` are containers and types, as in
     /// cellist::Kernel.
     template <class... Uses>
     [[nodiscard]] raster::Pass pass(std::string_view source, const std::string& file_name,

@@ -15,7 +15,7 @@ static inline uint oit_bucket(float depth, float least, float greatest) {
     return clamp((int)(part * (float)OIT_BUCKETS), 0, OIT_BUCKETS - 1);
 }
 
-#ifdef OIT_PASS
+#ifdef OIT_STORES
 #define OIT_TARGET                                                                                 \
     global const ulong *begin, volatile global uint *range, volatile global ulong *buckets,        \
         volatile global uint *counts, global uint *nodes

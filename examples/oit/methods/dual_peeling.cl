@@ -6,7 +6,7 @@
 //   state    what has been blended
 // At the end, the keys in front are OIT_LAST_KEY.
 
-#ifdef OIT_PASS
+#ifdef OIT_STORES
 #define OIT_TARGET global const ulong *current, volatile global ulong *next, global uint *nodes
 #define OIT_TARGET_PASS current, next, nodes
 

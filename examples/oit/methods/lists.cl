@@ -1,7 +1,7 @@
 // The methods that keep every fragment in a list of its pixel, whatever the storage (Yang et al.
 // 2010, section 4.1). A container of shape width x height, or width x height x eyes.
 
-#ifdef OIT_PASS
+#ifdef OIT_STORES
 #define OIT_TARGET CELLIST_LISTS(OIT_NODE, fragments)
 #define OIT_TARGET_PASS CELLIST_PASS(fragments)
 

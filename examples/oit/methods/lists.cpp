@@ -28,8 +28,8 @@ ListReader first_reader(const Quality& quality) {
 }
 
 // The first frame blocks until the lengths of the lists are known. Later frames are enqueued at
-// once, into a pool a quarter larger. A frame that overflows this pool is drawn again as the first.
-// So are all frames if the larger pool cannot be allocated.
+// once, into a pool a quarter larger. A frame that overflows this pool is drawn again, and blocks as
+// the first frame does. So do all frames if the larger pool cannot be allocated.
 template <class Node>
 class ListMethod : public Method {
 public:
@@ -51,14 +51,14 @@ public:
     void store() override {
         if (pool_ == Pool::measured) fix_capacity();
         const auto draw = [this] { source_.draw(pass_, fragments_); };
-        if (pool_ == Pool::fixed)
+        if (pool_ == Pool::bounded)
             built_ = fragments_.build_async(draw);
         else
             fragments_.build(draw);
     }
 
     void resolve() override {
-        if (pool_ == Pool::fixed && unsorted_reader_) {
+        if (pool_ == Pool::bounded && unsorted_reader_) {
             source_.run_on_screen(*unsorted_reader_, fragments_, longer_);
             longer_read_ = longer_.download_async();
             return;
@@ -68,7 +68,7 @@ public:
     }
 
     [[nodiscard]] bool finish_or_grow() override {
-        if (pool_ != Pool::fixed) {
+        if (pool_ != Pool::bounded) {
             if (may_fix_capacity_) {
                 lengths_ = fragments_.lengths();
                 pool_ = Pool::measured;
@@ -99,8 +99,8 @@ public:
 private:
     enum class Pool {
         growing,   // store() waits for the device, and the pool grows
-        measured,  // as growing, and lengths_ is known: the next store() fixes the capacity
-        fixed,     // store() does not wait, and fragments that do not fit are dropped
+        measured,  // as growing, and lengths_ is known: the next store() bounds the capacity
+        bounded,   // store() does not wait, and fragments that do not fit are dropped
     };
 
     [[nodiscard]] bool keeps_all() const { return options_.overflow == cellist::Overflow::grow; }
@@ -117,7 +117,8 @@ private:
             options.capacity_nodes = more(lengths_.total);
         const std::uint64_t longest = more(lengths_.longest);
         try {
-            // The old pool goes first, so that the device never holds both.
+            // A default pool replaces the old one first, so that the device never holds the old
+            // and the new large pool together.
             fragments_ = lists_with(options_);
             fragments_ = lists_with(options);
         } catch (const cellist::Error&) {
@@ -131,7 +132,7 @@ private:
         else
             unsorted_reader_.reset();
         longer_.fill(0);
-        pool_ = Pool::fixed;
+        pool_ = Pool::bounded;
     }
 
     [[nodiscard]] cellist::Lists<Node> lists_with(const cellist::ListsOptions& options) const {

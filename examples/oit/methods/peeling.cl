@@ -5,7 +5,7 @@
 //   nodes    the layer that was taken
 //   state    what has been blended
 
-#ifdef OIT_PASS
+#ifdef OIT_STORES
 #define OIT_TARGET global const ulong *current, volatile global ulong *next, global uint *nodes
 #define OIT_TARGET_PASS current, next, nodes
 

@@ -123,7 +123,7 @@ public:
     }
 
 private:
-    void add_lists(const ListsCore& lists);
+    void add_lists(const ListsCore& lists);  // in lists_core.cpp
 
     std::vector<Argument> arguments_;
     std::vector<ClosedLists> closed_;
@@ -132,7 +132,7 @@ private:
 };
 
 /// The mode in which a container is read.
-[[nodiscard]] unsigned read_mode(const ListsCore& lists);
+[[nodiscard]] unsigned read_mode(const ListsCore& lists);  // in lists_core.cpp
 
 template <class T>
 Definitions definitions_used(const Lists<T>& lists) {
