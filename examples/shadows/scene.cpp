@@ -133,8 +133,8 @@ Scene empty_room() {
                    .field_degrees = 62,
                    .intensity = {24, 24, 23}};
     scene.eye = {0, 0.1, 4.1};
-    scene.target = {0, -0.05, 0};
-    scene.field_degrees = 36;
+    scene.target = {0, 0, 0};
+    scene.field_degrees = 35;
     return scene;
 }
 
