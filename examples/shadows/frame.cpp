@@ -258,15 +258,15 @@ Renderer::Renderer(const cellist::Device& device, const Scene& scene, const Sett
       gather_(gather_of(settings)),
       simplified_(simplified_meshes(scene, settings.simplify)),
       geometry_(device, pointers(scene.meshes, simplified_)),
-      placed_(raster_placed(scene)),
       setup_(device),
       nearest_(device, {}, pass_source(kernels::nearest_cl), "nearest.cl", cellist::type<Surface>,
                cellist::type<PlacedMesh>, cellist::type<LightSource>),
       surface_(device, {}, pass_source(kernels::surface_cl), "surface.cl", cellist::type<Surface>,
                cellist::type<PlacedMesh>, cellist::type<LightSource>),
       placed_meshes_(device, placed_meshes(scene)),
-      eye_(device, setup_, geometry_, placed_, eye_view(scene, gather_)),
-      light_(device, setup_, geometry_, placed_, light_view(scene.light, gather_.rsm_side)),
+      eye_(device, setup_, geometry_, raster_placed(scene), eye_view(scene, gather_)),
+      light_(device, setup_, geometry_, raster_placed(scene),
+             light_view(scene.light, gather_.rsm_side)),
       blockers_(device, blockers_of(scene, geometry_, !simplified_.empty())),
       grid_([&] {
           const auto triangles =
@@ -278,7 +278,7 @@ Renderer::Renderer(const cellist::Device& device, const Scene& scene, const Sett
           return std::make_unique<grid::TriangleGrid>(device, triangles, cells, settings.storage);
       }()),
       rays_(std::make_unique<grid::Rays>(device, *grid_)),
-      emitters_(device, light_.surfaces().size()),
+      emitters_(device, static_cast<std::size_t>(settings.samples * settings.samples)),
       a_(device, pixels_of(gather_)),
       b_(device, static_cast<std::size_t>(b_width()) * static_cast<std::size_t>(b_height())),
       b_all_(device, b_.size()),
@@ -306,11 +306,11 @@ void Renderer::draw(const Scene& scene, PassTimes* times, const TakeRays& take_r
     const raster::View lit = light_view(scene.light, gather_.rsm_side);
     const LightSource light = source_of(lit, scene.light);
     if (scene.move) {
-        placed_ = raster_placed(scene);
-        const std::vector<PlacedMesh> placed = placed_meshes(scene);
-        placed_meshes_.upload_async(placed).wait();
-        eye_.move(placed_, eye_view(scene, gather_));
-        light_.move(placed_, lit);
+        const std::vector<raster::Placed> instances = raster_placed(scene);
+        const std::vector<PlacedMesh> meshes = placed_meshes(scene);
+        placed_meshes_.upload_async(meshes).wait();
+        eye_.move(instances, eye_view(scene, gather_));
+        light_.move(instances, lit);
     }
     end("move");
 

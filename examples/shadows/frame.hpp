@@ -88,8 +88,7 @@ public:
         std::function<void(const cellist::Buffer<grid::GridSegment>& rays, std::size_t count,
                            const cellist::Buffer<cl_uint>& blocked)>;
 
-    /// Draws the scene, whose instances, light and camera may have moved. Blocks while the grid is
-    /// built.
+    /// Draws the scene as Scene::move has left it. Blocks while the grid is built.
     void draw(const Scene& scene, PassTimes* times = nullptr, const TakeRays& take_rays = {});
 
     /// What the last frame counted. Blocks.
@@ -128,7 +127,6 @@ private:
     Gather gather_;
     std::vector<support::Mesh> simplified_;  ///< meshes of blockers, where these are simplified
     raster::Geometry geometry_;
-    std::vector<raster::Placed> placed_;
     raster::SetupKernels setup_;
     raster::Pass nearest_;
     raster::Pass surface_;

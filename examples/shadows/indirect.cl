@@ -22,32 +22,34 @@ kernel void place_blockers(global const Blocker* blockers, uint count,
 
 // ---- the reflective shadow map
 
-// One work-item a texel. A texel stands for all that its part of the map receives.
+// One work-item a sample: the texel in the middle of its part of the map. It stands for all that the
+// part receives.
 kernel void make_emitters(global const Surface* lit, const LightSource light, const Gather gather,
                           global Emitter* emitters) {
-    const int i = (int)get_global_id(0);
-    const int side = gather.rsm_side;
-    if (i >= side * side) return;
-    const Surface surface = lit[i];
+    const int sample = (int)get_global_id(0);
+    const int side = gather.rsm_side, part = side / gather.samples;
+    if (sample >= gather.samples * gather.samples) return;
+    const int x = sample % gather.samples * part + part / 2;
+    const int y = sample / gather.samples * part + part / 2;
+    const Surface surface = lit[y * side + x];
     Emitter emitter;
     emitter.position = surface.position;
     emitter.normal = surface.normal;
     emitter.power = (float4)(0.0f);
     if (surface.position.w > 0.0f) {
-        const float2 image = ((float2)(i % side, i / side) + 0.5f) / (float)side;
+        const float2 image = ((float2)(x, y) + 0.5f) / (float)side;
         const float2 across = (image - 0.5f) * light.side;
         // The solid angle of the texel, or its area across the light.
         const float texel = light.side / (float)side;
         const float slope = light.is_spot ? rsqrt(1.0f + dot(across, across)) : 1.0f;
         const float received = texel * texel * slope * slope * slope * light_fade(light, image);
-        const int part = side / gather.samples;
         const float texels = (float)(part * part);
         emitter.power = surface.albedo * light.intensity * (received * texels);
         emitter.power.w = texel * texel * texels *
                           light_spread(light, surface.position.xyz, slope, surface.normal.xyz) /
                           M_PI_F;
     }
-    emitters[i] = emitter;
+    emitters[sample] = emitter;
 }
 
 // ---- buffer A: all indirect light
@@ -61,10 +63,8 @@ kernel void gather_unblocked(global const Surface* seen, global const Emitter* e
     const Surface surface = seen[pixel];
     float3 sum = 0.0f;
     if (surface.position.w > 0.0f)
-        for (int v = 0; v < gather.samples; ++v)
-            for (int u = 0; u < gather.samples; ++u)
-                sum += light_from(emitters[light_sample(gather, u, v)], surface.position.xyz,
-                                  surface.normal.xyz);
+        for (int sample = 0; sample < gather.samples * gather.samples; ++sample)
+            sum += light_from(emitters[sample], surface.position.xyz, surface.normal.xyz);
     a[pixel] = (float4)(sum, 1.0f);
 }
 
@@ -81,14 +81,14 @@ static int b_pixel(const Gather gather, int x, int y) {
     return p.y * gather.width + p.x;
 }
 
-// The sample of ray number `ray` of a pixel of B. Neighbours in a square of interleave * interleave take
-// different samples, and all of them together take each sample once (Keller, Heidrich:
+// The sample of ray number `ray` of a pixel of B. Neighbours in a square of interleave * interleave
+// take different samples, and all of them together take each sample once (Keller, Heidrich:
 // "Interleaved Sampling", EGWR 2001).
 static int b_sample(const Gather gather, int x, int y, int ray) {
     const int rays = gather.samples / gather.interleave;  // along each axis
     const int u = (ray % rays) * gather.interleave + (x + ray / rays) % gather.interleave;
     const int v = (ray / rays) * gather.interleave + (y + ray % rays) % gather.interleave;
-    return light_sample(gather, u, v);
+    return v * gather.samples + u;
 }
 
 // Whether a sample lights a pixel of B at all.

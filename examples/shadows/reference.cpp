@@ -79,18 +79,6 @@ glm::dvec3 exact_light(const Emitter& emitter, const glm::dvec3& point, const gl
             (std::numbers::pi * square * (square + static_cast<double>(emitter.power.s[3]))));
 }
 
-std::vector<Emitter> sample_emitters(const Renderer& renderer) {
-    const Gather& gather = renderer.gather();
-    const std::vector<Emitter> texels = renderer.emitters().download();
-    const int part = gather.rsm_side / gather.samples;
-    std::vector<Emitter> samples;
-    for (int y = 0; y < gather.samples; ++y)
-        for (int x = 0; x < gather.samples; ++x)
-            samples.push_back(texels[static_cast<std::size_t>(
-                (y * part + part / 2) * gather.rsm_side + x * part + part / 2)]);
-    return samples;
-}
-
 std::vector<cl_float4> chosen(const std::vector<cl_float4>& image,
                               const std::vector<std::size_t>& pixels, double factor = 1) {
     std::vector<cl_float4> result;
@@ -153,7 +141,7 @@ Reference reference_with(const Renderer& renderer, const Occluders& occluders) {
     const std::vector<Surface> surfaces = renderer.surfaces().download();
     const std::vector<cl_float4> a = renderer.a().download();
     const std::vector<cl_float4> unblocked = renderer.unblocked().download();
-    const std::vector<Emitter> emitters = sample_emitters(renderer);
+    const std::vector<Emitter> emitters = renderer.emitters().download();
     const auto bias = static_cast<double>(renderer.gather().bias);
     const std::size_t step = step_for(
         static_cast<double>(surfaces.size()) * static_cast<double>(emitters.size()), occluders);

@@ -26,7 +26,7 @@ struct Blocker {
 };
 CELLIST_STRUCT(Blocker, instance, triangle);
 
-/// A texel of the reflective shadow map as a source of light.
+/// A sample of the reflective shadow map as a source of light: the texel in the middle of its part.
 struct Emitter {
     cl_float4 position;  ///< and 1
     cl_float4 normal;    ///< and 0

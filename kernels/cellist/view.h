@@ -135,8 +135,8 @@ typedef struct cellist_findings {
 // A sort looks at every other class at most.
 #define CELLIST_SORT_STAGES ((CELLIST_SORT_CLASSES + 1u) / 2u)
 
-// Counts nodes, alone in its cache line. Work-groups spread their atomics over several: those on one
-// address take up to a quarter of the time of a short sort on an H200.
+// Counts nodes, alone in its cache line. Work-groups spread their atomics over several counters: on
+// an H200, a short sort takes up to 13 % less time than with one.
 #define CELLIST_SORT_COUNTERS 16u
 typedef struct cellist_sort_counter {
     CELLIST_UINT nodes;

@@ -28,8 +28,8 @@ ListReader first_reader(const Quality& quality) {
 }
 
 // The first frame blocks until the lengths of the lists are known. Later frames are enqueued at
-// once, into a pool a quarter larger. A frame that overflows this pool is drawn again, and blocks as
-// the first frame does. So do all frames if the larger pool cannot be allocated.
+// once, into a pool a quarter larger. A frame that overflows this pool is drawn again, and blocks
+// as the first frame does. So do all frames if the larger pool cannot be allocated.
 template <class Node>
 class ListMethod : public Method {
 public:
