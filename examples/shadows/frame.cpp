@@ -54,14 +54,14 @@ raster::View eye_view(const Scene& scene, const Gather& gather) {
                             gather.height);
 }
 
-raster::View light_view(const Light& light, int side) {
+raster::View light_view(const support::Light& light, int side) {
     return light.is_spot
                ? support::look_at(light.position, light.target, light.field_degrees, side, side)
                : support::look_along(light.position, light.target, light.side, side);
 }
 
 // A view as the source of light that shines through it.
-LightSource source_of(const raster::View& view, const Light& light) {
+LightSource source_of(const raster::View& view, const support::Light& light) {
     const auto axis = [](const cl_float(&v)[4]) {
         return glm::normalize(glm::dvec3(v[0], v[1], v[2]));
     };

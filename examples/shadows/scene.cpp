@@ -147,7 +147,7 @@ std::size_t triangle_count(const Scene& scene) {
     return count;
 }
 
-Light make_parallel_light() {
+support::Light make_parallel_light() {
     return {.is_spot = false,
             .position = {-0.6, 0.9, 3},
             .target = {1.0, -0.4, -0.3},

@@ -7,6 +7,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
+#include "light.hpp"
 #include "mesh.hpp"
 
 namespace shadows {
@@ -19,24 +20,14 @@ struct Instance {
     bool blocks = false;      ///< indirect light
 };
 
-/// A light that casts shadows: a spot light, or parallel light in a square.
-struct Light {
-    bool is_spot = true;
-    glm::dvec3 position{0, 1, 0};
-    glm::dvec3 target{0};
-    double field_degrees = 60;  ///< of a spot light
-    double side = 2;            ///< of the square that parallel light falls through
-    glm::vec3 intensity{1};     ///< in W/sr, or in W/m2 for parallel light; linear RGB
-};
-
 /// Parallel light that falls into the room of these scenes through its open front.
-[[nodiscard]] Light make_parallel_light();
+[[nodiscard]] support::Light make_parallel_light();
 
 /// What is drawn, in metres. A scene fits into a box of about 3 m.
 struct Scene {
     std::vector<support::Mesh> meshes;
     std::vector<Instance> instances;
-    Light light;
+    support::Light light;
     glm::dvec3 eye{0, 0, 3.5};
     glm::dvec3 target{0};
     double field_degrees = 40;
