@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+
+#include "renderer.hpp"
+
+namespace motion {
+
+/// The reference: the mean of many pictures, each of one moment with an ordinary shadow map.
+class Accumulation {
+public:
+    explicit Accumulation(Frame& frame);
+
+    /// Draws so many moments, spread over the exposure, from the next one of `moments` on. The first
+    /// call clears the picture.
+    void draw(cl_uint first, cl_uint count, cl_uint moments);
+
+    /// The mean of the first `moments`, as Renderer::picture().
+    [[nodiscard]] std::vector<cl_float4> picture(cl_uint moments);
+
+private:
+    Frame& frame_;
+    Sweep sweep_;
+    SampleKernel add_moment_;
+    cellist::Kernel project_;
+    cellist::Kernel finish_;
+    cellist::Buffer<cl_ulong> seen_, lit_;
+    cellist::Buffer<cl_float4> sums_, picture_;
+};
+
+}  // namespace motion

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cellist/cellist.hpp>
+
+namespace motion {
+
+/// A camera or a light and its image, as kernels take them. Image coordinates count pixels from the
+/// centre of the image, x to the right and y down.
+struct View {
+    /// Rows that take a position (x, y, z, 1) to x * w, y * w, w, and depth along the axis. w is the
+    /// depth in a perspective view and 1 in a parallel one.
+    cl_float4 row_x, row_y, row_w, row_depth;
+    cl_float near_depth;  ///< nothing nearer than this is drawn or casts a shadow
+    cl_float pixel;       ///< the size of a pixel at depth 1, or everywhere in a parallel view
+    cl_int is_parallel;
+    cl_int width, height;
+};
+CELLIST_STRUCT(View, row_x, row_y, row_w, row_depth, near_depth, pixel, is_parallel, width, height);
+
+/// A vertex in a view, at both ends of the exposure: x * w, y * w, w, depth. NaN where it cannot be
+/// drawn.
+struct MovingVertex {
+    cl_float4 begin, end;
+};
+CELLIST_STRUCT(MovingVertex, begin, end);
+
+/// A part of the pixels that a triangle sweeps over.
+struct SweepPart {
+    cl_uint triangle, part, parts;
+};
+CELLIST_STRUCT(SweepPart, triangle, part, parts);
+
+/// A triangle that may cover a pixel of the camera at some time.
+struct Candidate {
+    cl_uint triangle;
+    cl_uint times;  ///< the first of them + 65536 * the last, in 1 / 65535 of the exposure
+};
+CELLIST_STRUCT(Candidate, triangle, times);
+
+/// A triangle covers the centre of a texel from `begin` to before `end`.
+struct VisibleRange {
+    cl_float begin, end;
+    cl_uint triangle;
+};
+CELLIST_STRUCT(VisibleRange, begin, end, triangle);
+
+/// The depth of one or more neighbouring triangles at the centre of a texel, linear in time.
+struct DepthPiece {
+    cl_float begin, end;
+    cl_float depth_begin, depth_end;
+};
+CELLIST_STRUCT(DepthPiece, begin, end, depth_begin, depth_end);
+
+/// The samples of a pixel.
+struct Sampling {
+    cl_uint samples;       ///< of each pixel
+    cl_uint first, count;  ///< of these in this batch
+};
+CELLIST_STRUCT(Sampling, samples, first, count);
+
+/// What surfaces look like.
+struct Shading {
+    cl_float4 light;      ///< position of a spot light and 1, or direction to a parallel light and 0
+    cl_float4 eye;        ///< position, and 1
+    cl_float4 intensity;  ///< linear RGB; of a spot light at distance 1
+    cl_float4 axis;       ///< where a spot light shines, of length 1
+    cl_float4 ambient;    ///< linear RGB
+    cl_float4 background;
+    cl_float bias;  ///< of shadow tests, in texels
+};
+CELLIST_STRUCT(Shading, light, eye, intensity, axis, ambient, background, bias);
+
+}  // namespace motion

@@ -1,0 +1,86 @@
+#include "sweep.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "input_error.hpp"
+#include "motion_kernels.hpp"
+
+namespace motion {
+namespace {
+
+// Triangles that sweep over many pixels are shared out while there is room for these parts.
+constexpr std::size_t parts_max = 65536;
+
+// Hits keep a bit for themselves.
+constexpr std::size_t triangles_max = 0x7FFFFFFE;
+
+std::vector<cl_float> floats_of(const std::vector<glm::vec3>& points) {
+    std::vector<cl_float> floats;
+    floats.reserve(3 * points.size());
+    for (const glm::vec3& p : points) floats.insert(floats.end(), {p.x, p.y, p.z});
+    return floats;
+}
+
+std::vector<cl_uint> indices_of(const Scene& scene) {
+    if (scene.begin.size() != scene.end.size() || scene.colours.size() != scene.triangles.size())
+        throw support::InputError("a moving scene needs both positions of each vertex, and a "
+                                  "colour of each triangle");
+    if (scene.triangles.size() > triangles_max)
+        throw support::InputError("a moving scene of " + std::to_string(scene.triangles.size()) +
+                                  " triangles: expected at most " + std::to_string(triangles_max));
+    std::vector<cl_uint> indices;
+    indices.reserve(3 * scene.triangles.size());
+    for (const glm::uvec3& t : scene.triangles) {
+        if (std::max({t.x, t.y, t.z}) >= scene.begin.size())
+            throw support::InputError("a triangle of a moving scene has a vertex that does not "
+                                      "exist");
+        indices.insert(indices.end(), {t.x, t.y, t.z});
+    }
+    return indices;
+}
+
+cl_float linear_of_srgb(unsigned value) {
+    const double c = value / 255.0;
+    return static_cast<cl_float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+}
+
+std::vector<cl_float4> albedos_of(const Scene& scene) {
+    std::vector<cl_float4> albedos;
+    albedos.reserve(scene.colours.size());
+    for (const glm::u8vec4& c : scene.colours)
+        albedos.push_back({{linear_of_srgb(c.x), linear_of_srgb(c.y), linear_of_srgb(c.z), 1}});
+    return albedos;
+}
+
+cellist::Range whole_device(const cellist::DeviceInfo& device) {
+    const std::size_t group = device.one_thread_per_work_group ? 1 : 64;
+    const std::size_t groups =
+        std::size_t{device.compute_units} * (device.one_thread_per_work_group ? 4 : 16);
+    return cellist::Range::padded(groups * group, group);
+}
+
+}  // namespace
+
+std::string with_moving(std::string_view text) {
+    return "#include <cellist/lists.clh>\n" + std::string(kernels::moving_clh) + std::string(text);
+}
+
+std::string Sweep::text_of(std::string_view pass) {
+    return std::string(kernels::exact_clh) + std::string(pass) + std::string(kernels::sweep_clh);
+}
+
+SceneBuffers::SceneBuffers(const cellist::Device& device, const Scene& scene)
+    : vertex_count(static_cast<cl_uint>(scene.begin.size())),
+      triangle_count(static_cast<cl_uint>(scene.triangles.size())),
+      begin(device, floats_of(scene.begin)),
+      end(device, floats_of(scene.end)),
+      indices(device, indices_of(scene)),
+      albedos(device, albedos_of(scene)),
+      parts(device, parts_max),
+      part_count(device, 1),
+      parts_range(whole_device(device.info())) {}
+
+}  // namespace motion

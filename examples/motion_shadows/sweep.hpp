@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include <cellist/cellist.hpp>
+
+#include "device_types.hpp"
+#include "scene.hpp"
+
+namespace motion {
+
+/// The text of a kernel after what all kernels of this program need.
+[[nodiscard]] std::string with_moving(std::string_view text);
+
+/// A kernel that works with moving triangles. `uses` as in cellist::Kernel.
+template <class... Uses>
+[[nodiscard]] cellist::Kernel moving_kernel(const cellist::Device& device, std::string_view text,
+                                            const std::string& name, const Uses&... uses) {
+    return cellist::Kernel(device, cellist::Source{.text = with_moving(text), .file_name = name},
+                           name, cellist::type<View>, cellist::type<MovingVertex>,
+                           cellist::type<SweepPart>, cellist::type<Sampling>,
+                           cellist::type<Shading>, uses...);
+}
+
+/// The triangles of a scene on the device, and what sweeping over them needs.
+struct SceneBuffers {
+    SceneBuffers(const cellist::Device& device, const Scene& scene);
+
+    cl_uint vertex_count, triangle_count;
+    cellist::Buffer<cl_float> begin, end;   ///< 3 a vertex
+    cellist::Buffer<cl_uint> indices;       ///< 3 a triangle
+    cellist::Buffer<cl_float4> albedos;     ///< of the triangles: linear RGB, and 1
+    cellist::Buffer<SweepPart> parts;
+    cellist::Buffer<cl_uint> part_count;
+    cellist::Range parts_range;
+};
+
+/// The key of a pixel where sweep_still.cl finds nothing. Its depth is NaN.
+constexpr cl_ulong no_key = 0x7FFFFFFFFFFFFFFF;
+
+/// A view of the scene.
+struct SeenScene {
+    SeenScene(const cellist::Device& device, const View& its_view, std::size_t vertex_count)
+        : view(its_view), vertices(device, vertex_count) {}
+    View view;
+    cellist::Buffer<MovingVertex> vertices;
+};
+
+/// Visits every pixel that each triangle may touch: see sweep.clh.
+class Sweep {
+public:
+    /// `pass` is the text of the pass. `uses` as in cellist::Kernel.
+    template <class... Uses>
+    Sweep(const cellist::Device& device, std::string_view pass, const Uses&... uses)
+        : sweep_(moving_kernel(device, text_of(pass), "sweep", uses...)),
+          sweep_parts_(moving_kernel(device, text_of(pass), "sweep_parts", uses...)) {}
+
+    /// Does not block. `targets` are the arguments of the pass.
+    template <class... Targets>
+    void run(SceneBuffers& scene, const SeenScene& seen, const Targets&... targets) {
+        const auto room = static_cast<cl_uint>(scene.parts.size());
+        scene.part_count.fill(0);
+        sweep_.run(cellist::Range::padded(scene.triangle_count, 64), targets..., seen.view,
+                   seen.vertices, scene.indices, scene.triangle_count, scene.parts, room,
+                   scene.part_count);
+        sweep_parts_.run(scene.parts_range, targets..., seen.view, seen.vertices, scene.indices,
+                         scene.parts, room, scene.part_count);
+    }
+
+private:
+    [[nodiscard]] static std::string text_of(std::string_view pass);
+    cellist::Kernel sweep_;
+    cellist::Kernel sweep_parts_;
+};
+
+}  // namespace motion

@@ -1,0 +1,8 @@
+// Shadow test: a shadow map of one moment.
+#define TEST_TARGET global const ulong* keys
+#define TEST_TARGET_PASS keys
+
+static inline int is_blocked(TEST_TARGET, const View light, global const MovingVertex* lit,
+                             global const uint* indices, const Receiver* r, uint sample) {
+    return as_float((uint)(keys[r->texel] >> 32)) < r->limit;
+}
