@@ -39,9 +39,9 @@ void add(Scene& scene, const Shape& shape, const glm::dmat4& place, const glm::u
 void add_ground(Scene& scene, const glm::dvec2& centre, const glm::dvec2& size,
                 const glm::ivec2& cells = glm::ivec2(32));
 
-/// Puts a spot light at `position`. Turns it, and narrows its field, so that its square shadow map
-/// just holds all vertices and its cone holds all that move. A white surface that faces the light at
-/// the distance of `centre` gets a radiance of 1.
+/// Puts a spot light at `position`. Turns it and narrows its field: its square shadow map just
+/// holds all vertices, and its disc holds those that move, without its faded rim. A white surface
+/// that faces the light has a radiance of 1 at the distance of `centre`.
 void aim_light(Scene& scene, const glm::dvec3& position, const glm::dvec3& centre);
 
 }  // namespace motion

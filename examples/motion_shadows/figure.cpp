@@ -24,12 +24,12 @@ glm::dvec3 on_side(const glm::dvec3& left, std::size_t side) {
     return {side == 0 ? left.x : -left.x, left.y, left.z};
 }
 
-// A cone with round ends. Ellipsoids are such cones too: a cone of no length in scaled space.
+// A cone with round ends. An ellipsoid is a cone of no length in stretched space.
 struct Part {
     Bone bone;
     glm::dvec3 a, b;
     double radius_a, radius_b;
-    double blend;           // how far it blends into the parts before it
+    double blend;           // into the parts before it, where the distances differ by less
     glm::dvec3 stretch{1};  // of the space around `a`
 };
 
@@ -51,15 +51,15 @@ const Part left_parts[] = {
     {pelvis, {0.075, 0.935, -0.055}, {0.075, 0.935, -0.055}, 0.082, 0.082, 0.05},
     {head, {0.08, 1.665, -0.005}, {0.08, 1.645, -0.008}, 0.016, 0.012, 0.01, {0.6, 1.2, 1}},
     {upper_arm, shoulder, elbow, 0.056, 0.041, 0.04},
-    {forearm, elbow, wrist, 0.041, 0.027, 0.01},
-    {forearm, {0.405, 1.155, -0.025}, {0.44, 1.115, -0.02}, 0.045, 0.04, 0.03},
+    {forearm, elbow, wrist, 0.041, 0.028, 0.01},
+    {forearm, {0.39, 1.175, -0.028}, {0.48, 1.07, -0.018}, 0.038, 0.032, 0.04},
     {forearm, wrist, {0.578, 0.95, 0.005}, 0.029, 0.033, 0.03, {1, 1, 1.15}},
     {forearm, {0.585, 0.94, 0.01}, {0.625, 0.875, 0.02}, 0.026, 0.016, 0.02, {1, 1, 1.4}},
     {forearm, {0.555, 0.975, 0.03}, {0.575, 0.92, 0.065}, 0.014, 0.011, 0.015},
     {thigh, hip, knee, 0.088, 0.056, 0.04},
-    {thigh, {0.1, 0.8, 0.02}, {0.11, 0.65, 0.02}, 0.075, 0.062, 0.05},
-    {shin, knee, ankle, 0.052, 0.036, 0.015},
-    {shin, {0.12, 0.4, -0.025}, {0.124, 0.3, -0.025}, 0.05, 0.042, 0.04},
+    {thigh, {0.097, 0.9, 0.015}, {0.113, 0.56, 0.022}, 0.076, 0.052, 0.04},
+    {shin, knee, {0.129, 0.105, -0.023}, 0.052, 0.036, 0.015},
+    {shin, {0.117, 0.46, -0.01}, {0.125, 0.24, -0.022}, 0.046, 0.036, 0.04},
     {foot, ankle, {0.13, 0.05, -0.035}, 0.037, 0.042, 0.02},
     {foot, {0.13, 0.06, -0.01}, {0.142, 0.03, 0.11}, 0.042, 0.036, 0.03},
     {foot, {0.128, 0.03, 0.11}, {0.138, 0.024, 0.165}, 0.034, 0.026, 0.03},
@@ -81,7 +81,7 @@ double smooth_min(double a, double b, double blend) {
     return std::min(a, b) - 0.25 * blend * near * near;
 }
 
-// The parts of both sides, each with the sphere that holds it and its blend.
+// The parts of the middle and of both sides, each with a sphere that holds it.
 class Body {
 public:
     Body() {
@@ -105,9 +105,10 @@ public:
     [[nodiscard]] double distance(const glm::dvec3& p) const {
         double nearest = std::numeric_limits<double>::max();
         for (std::size_t i = 0; i < parts_.size(); ++i) {
-            // Parts whose blend cannot reach the point are the most.
-            const double least = glm::distance(p, glm::dvec3(spheres_[i])) - spheres_[i].w;
-            if (least > nearest + most_blend) continue;
+            // Most parts are too far away to change the distance.
+            const double reach = nearest + most_blend + spheres_[i].w;
+            const glm::dvec3 from_centre = p - glm::dvec3(spheres_[i]);
+            if (reach < 0 || glm::dot(from_centre, from_centre) > reach * reach) continue;
             nearest = smooth_min(nearest, distance_to(parts_[i], p), parts_[i].blend);
         }
         // Flat soles.
@@ -133,11 +134,11 @@ private:
 
 std::array<float, bone_count> weights_of(const std::array<double, bone_count>& distances) {
     // Bones share a vertex where their parts are about as near.
-    constexpr double reach = 0.05;
     const double nearest = *std::min_element(distances.begin(), distances.end());
     std::array<double, bone_count> weights{};
     double sum = 0;
     for (std::size_t bone = 0; bone < bone_count; ++bone) {
+        const double reach = bone == pelvis || bone == chest ? 0.08 : 0.05;
         const double share = std::max(0.0, 1 - (distances[bone] - nearest) / reach);
         weights[bone] = share * share;
         sum += weights[bone];
@@ -153,13 +154,16 @@ glm::u8vec4 colour_at(const glm::dvec3& p) {
     constexpr glm::u8vec4 skin(224, 172, 140, 255), hair(70, 48, 36, 255), shirt(178, 58, 50, 255),
         trousers(58, 76, 112, 255), shoes(60, 54, 52, 255), sole(225, 225, 220, 255);
     if (p.y > 1.525) {
-        const bool is_hair = p.y > 1.745 - 0.05 * std::abs(p.x) / 0.08 ||
+        const bool is_eye =
+            p.z > 0 && glm::distance(glm::abs(p), glm::dvec3(0.032, 1.672, 0.088)) < 0.012;
+        const bool is_hair = p.y > 1.745 - 0.6 * std::abs(p.x) ||
                              (p.z < 0.01 && p.y > 1.6 && std::abs(p.x) < 0.085) ||
                              (p.z < -0.02 && p.y > 1.57);
-        return is_hair ? hair : skin;
+        return is_hair || is_eye ? hair : skin;
     }
-    // Sleeves end above the elbow.
-    if (std::abs(p.x) > 0.33) return skin;
+    const glm::dvec3 along_arm = glm::normalize(elbow - shoulder);
+    const double down_arm = glm::dot(on_side(p, p.x < 0 ? 1 : 0) - shoulder, along_arm);
+    if (std::abs(p.x) > 0.25 && down_arm > 0.2) return skin;
     if (p.y > 1.01) return shirt;
     if (p.y > 0.1) return trousers;
     return p.y < 0.016 ? sole : shoes;
@@ -233,17 +237,17 @@ Figure make_figure(std::size_t triangles) {
     const Body body;
     const Solid solid{.distance = [&](const glm::dvec3& p) { return body.distance(p); },
                       .low = {-0.7, 0, -0.2},
-                      .high = {0.7, 1.82, 0.22},
-                      .slack = 0.25 * Body::most_blend};
+                      .high = {0.7, 1.82, 0.22}};
     Figure figure;
-    // The number of triangles is almost inverse to the square of the cell's side.
-    double cell = 0.02;
-    for (int round = 0; round < 6; ++round) {
+    // The number of triangles is almost inverse to the square of the cell's side. Small steps find
+    // the numbers of coarse figures, which vary more.
+    double cell = 0.01;
+    for (int round = 0; round < 20; ++round) {
         figure.skin = make_surface(solid, cell);
         const double ratio =
             static_cast<double>(figure.skin.triangles.size()) / static_cast<double>(triangles);
         if (std::abs(ratio - 1) < 0.005) break;
-        cell *= std::sqrt(ratio);
+        cell *= std::pow(ratio, round < 2 ? 0.5 : 0.2);
     }
     for (const glm::dvec3& p : figure.skin.positions)
         figure.weights.push_back(weights_of(body.bone_distances(p)));
@@ -260,8 +264,8 @@ std::vector<glm::vec3> skin_positions(const Figure& figure, const BonePlaces& pl
         const glm::dvec4 rest(figure.skin.positions[i], 1);
         glm::dvec3 sum(0);
         for (std::size_t bone = 0; bone < bone_count; ++bone)
-            if (const double weight = figure.weights[i][bone]; weight > 0)
-                sum += weight * glm::dvec3(places[bone] * rest);
+            if (const float weight = figure.weights[i][bone]; weight > 0)
+                sum += static_cast<double>(weight) * glm::dvec3(places[bone] * rest);
         positions.emplace_back(sum);
     }
     return positions;

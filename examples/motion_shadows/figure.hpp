@@ -12,7 +12,7 @@
 
 namespace motion {
 
-/// The bones of a figure. Those of a side stand for the left one, at +x, and the right one.
+/// The bones of a figure. Each bone of the left side, at +x, comes before that of the right side.
 enum Bone : std::size_t {
     pelvis,
     chest,

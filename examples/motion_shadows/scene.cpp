@@ -32,7 +32,7 @@ Shape make_blade() {
     Shape blade = make_box({40, 2, 12});
     for (glm::dvec3& p : blade.positions) {
         const double along = p.x + 0.5;
-        // Up to the last tenth, from the edges to the middle.
+        // The last tenth becomes narrower.
         const double tip = std::max(0.0, (along - 0.9) / 0.1);
         const double chord = (0.16 + 0.1 * along) * (1 - 0.7 * tip * tip);
         const glm::dvec4 section =
@@ -44,13 +44,12 @@ Shape make_blade() {
 
 // The colour of a triangle of a mesh as the file says, or that of clay.
 glm::u8vec4 colour_of(const support::Mesh& mesh, std::size_t triangle) {
-    glm::dvec3 linear(0.55, 0.42, 0.32);
+    glm::dvec3 linear = mesh.colours.empty() ? glm::dvec3(0.55, 0.42, 0.32) : glm::dvec3(1);
     if (!mesh.triangle_materials.empty()) {
         const support::MeshMaterial& material = mesh.materials[mesh.triangle_materials[triangle]];
         if (material.base_colour) linear = glm::dvec3(*material.base_colour);
     }
     if (!mesh.colours.empty()) {
-        if (mesh.triangle_materials.empty()) linear = glm::dvec3(1);
         glm::dvec3 sum(0);
         for (const std::uint32_t vertex : mesh.triangles[triangle])
             sum += glm::dvec3(mesh.colours[vertex]);
@@ -88,7 +87,7 @@ Scene make_cubes() {
     const glm::dmat4 lower =
         moved({-0.3, 0.42, 0.05}) * turned(25, y_axis) * scaled(glm::dvec3(0.62));
     const glm::dmat4 upper =
-        moved({0.28, 1.15, -0.1}) * turned(-15, y_axis) * scaled(glm::dvec3(0.46));
+        moved({0.14, 1.12, -0.08}) * turned(-15, y_axis) * scaled(glm::dvec3(0.46));
     add(scene, cube, lower, up * lower, {205, 92, 60, 255});
     add(scene, cube, upper, up * upper, {70, 120, 185, 255});
     aim_light(scene, {0.35, 3.6, 0.3}, {0, 0.6, 0});
@@ -138,8 +137,8 @@ Scene make_blinds() {
     const Shape slat = make_box({2, 40, 6});
     for (int i = 0; i < 6; ++i) {
         const glm::dmat4 place =
-            moved({-0.95 + 0.3 * i, 0.8, 0.1}) * turned(55, y_axis) * scaled({0.012, 1.2, 0.16});
-        add(scene, slat, place, moved({0.3, 0, 0}) * place, {200, 85, 60, 255});
+            moved({-0.9 + 0.28 * i, 0.8, 0.1}) * turned(55, y_axis) * scaled({0.012, 1.2, 0.16});
+        add(scene, slat, place, moved({0.28, 0, 0}) * place, {200, 85, 60, 255});
     }
     const glm::dmat4 lying = turned(90, {0, 0, 1});
     for (int i = 0; i < 5; ++i) {
@@ -147,8 +146,8 @@ Scene make_blinds() {
                                  scaled({0.012, 1.7, 0.15});
         add(scene, slat, place, moved({0, 0.2, 0}) * place, {75, 125, 175, 255});
     }
-    aim_light(scene, {-0.9, 1.9, 3.4}, {0, 0.7, -0.4});
-    scene.eye = {2.3, 1.5, 2.9};
+    aim_light(scene, {-0.7, 1.9, 3.2}, {0, 0.7, -0.4});
+    scene.eye = {0.7, 1.4, 3.7};
     scene.target = {0, 0.72, -0.35};
     scene.field_degrees = 36;
     return scene;
@@ -165,11 +164,14 @@ Scene make_mesh_scene(const support::Mesh& mesh, const RigidMotion& motion) {
         throw support::InputError("the mesh spins by " + std::to_string(motion.spin_degrees) +
                                   " degrees: give -360 to 360");
     Bounds bounds;
-    for (const glm::vec3& p : mesh.positions) bounds.add(p);
+    for (const glm::vec3& p : mesh.positions) {
+        if (!std::isfinite(double(p.x) + double(p.y) + double(p.z)))
+            throw support::InputError("a vertex of the mesh is not finite");
+        bounds.add(glm::dvec3(p));
+    }
     const glm::dvec3 size = bounds.size();
     const double largest = std::max({size.x, size.y, size.z});
-    if (!(largest > 0) || !std::isfinite(largest))
-        throw support::InputError("the mesh has no size");
+    if (!(largest > 0)) throw support::InputError("the mesh has no size");
 
     Shape shape;
     for (const glm::vec3& p : mesh.positions)

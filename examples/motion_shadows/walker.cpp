@@ -11,22 +11,22 @@ namespace {
 // The left leg swings forward; the right foot stands.
 constexpr Pose begin_pose() {
     return {
-        .pelvis_move = {0, -0.035, 0},
+        .pelvis_move = {0, -0.02, 0},
         .pelvis_turn = 4,
         .lean = 4,
         .chest_turn = -6,
         .arm_forward = {22, -18},
-        .elbow = {35, 15},
+        .elbow = {26, 12},
         .feet = {{{.move = {-0.04, 0.15, -0.17}, .pitch_degrees = 38}, {.move = {0.03, 0, 0}}}}};
 }
 
 constexpr Pose end_pose() {
-    return {.pelvis_move = {0, -0.04, 0.14},
+    return {.pelvis_move = {0, -0.02, 0.14},
             .pelvis_turn = -6,
             .lean = 7,
             .chest_turn = 8,
             .arm_forward = {-22, 26},
-            .elbow = {15, 38},
+            .elbow = {12, 32},
             .feet = {{{.move = {-0.04, 0.05, 0.4}, .pitch_degrees = -18}, {.move = {0.03, 0, 0}}}}};
 }
 
@@ -39,7 +39,7 @@ Scene make_walker(std::size_t triangles) {
                                   " triangles: give 12000 to 1000000");
     Scene scene;
     scene.name = "walker";
-    add_ground(scene, {0, -0.5}, {2.8, 3.4});
+    add_ground(scene, {0.1, -0.95}, {3, 4.5});
     const Figure figure = make_figure(triangles - scene.triangles.size());
     const auto first = static_cast<std::uint32_t>(scene.begin.size());
     for (const glm::uvec3& t : figure.skin.triangles) scene.triangles.push_back(first + t);
@@ -49,10 +49,10 @@ Scene make_walker(std::size_t triangles) {
     };
     append(scene.begin, skin_positions(figure, place_bones(begin_pose())));
     append(scene.end, skin_positions(figure, place_bones(end_pose())));
-    aim_light(scene, {0.9, 3.0, 4.2}, {0, 0.8, 0});
-    scene.eye = {3.1, 1.9, 3.4};
-    scene.target = {0, 0.78, -0.2};
-    scene.field_degrees = 32;
+    aim_light(scene, {0.9, 4, 3.8}, {0, 0.8, 0});
+    scene.eye = {3.2, 1.8, 3.1};
+    scene.target = {0.1, 0.8, -0.25};
+    scene.field_degrees = 29;
     return scene;
 }
 
