@@ -18,9 +18,9 @@ cl_float offset_of(cl_uint moment, double step) {
 Accumulation::Accumulation(Frame& frame)
     : frame_(frame),
       sweep_(frame.device, kernels::sweep_still_cl),
-      add_moment_(frame.device, kernels::shade_cl, "add_moment"),
+      add_moment_(moving_kernel(frame.device, with_receivers(kernels::shade_cl), "add_moment")),
       project_(moving_kernel(frame.device, kernels::project_cl, "project_vertices")),
-      finish_(moving_kernel(frame.device, kernels::finish_cl, "finish_picture")),
+      finish_(moving_kernel(frame.device, with_receivers(kernels::shade_cl), "finish_picture")),
       seen_(frame.device, frame.pixels()),
       lit_(frame.device, frame.texels()),
       sums_(frame.device, frame.pixels()),
@@ -42,8 +42,10 @@ void Accumulation::draw(cl_uint first, cl_uint count, cl_uint moments) {
         lit_.fill(no_key);
         sweep_.run(scene, frame_.camera, seen_, time, x, y);
         sweep_.run(scene, frame_.light, lit_, time, 0.0F, 0.0F);
-        add_moment_.run(frame_, cellist::Range::padded(frame_.pixels(), 64), std::tie(), seen_,
-                        lit_, time, x, y, scene.albedos, sums_);
+        add_moment_.run(cellist::Range::padded(frame_.pixels(), 64), frame_.camera.view,
+                        frame_.camera.vertices, frame_.light.view, frame_.light.vertices,
+                        scene.indices, scene.begin, scene.end, frame_.shading, seen_, lit_, time,
+                        x, y, scene.albedos, sums_);
     }
 }
 

@@ -21,7 +21,7 @@ public:
 private:
     Frame& frame_;
     Sweep sweep_;
-    SampleKernel add_moment_;
+    cellist::Kernel add_moment_;
     cellist::Kernel project_;
     cellist::Kernel finish_;
     cellist::Buffer<cl_ulong> seen_, lit_;

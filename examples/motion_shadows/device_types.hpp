@@ -24,18 +24,12 @@ struct MovingVertex {
 };
 CELLIST_STRUCT(MovingVertex, begin, end);
 
-/// A part of the pixels that a triangle sweeps over.
-struct SweepPart {
-    cl_uint triangle, part, parts;
-};
-CELLIST_STRUCT(SweepPart, triangle, part, parts);
-
-/// A triangle that may cover a pixel of the camera at some time.
-struct Candidate {
+/// A rectangle of the pixels that a triangle sweeps over.
+struct SweepTile {
     cl_uint triangle;
-    cl_uint times;  ///< the first of them + 65536 * the last, in 1 / 65535 of the exposure
+    cl_uint place;  ///< its number among those of the triangle, row by row + 65536 * size (sweep.clh)
 };
-CELLIST_STRUCT(Candidate, triangle, times);
+CELLIST_STRUCT(SweepTile, triangle, place);
 
 /// A triangle covers the centre of a texel from `begin` to before `end`.
 struct VisibleRange {
@@ -50,6 +44,15 @@ struct DepthPiece {
     cl_float depth_begin, depth_end;
 };
 CELLIST_STRUCT(DepthPiece, begin, end, depth_begin, depth_end);
+
+/// What a sample of the camera sees, as the receiver of a shadow.
+struct Receiver {
+    cl_uint triangle;  ///< or 0xFFFFFFFF where it sees nothing; highest bit: in shadow
+    cl_uint texel;     ///< of the shadow map, or 0xFFFFFFFF where no shadow test is needed
+    cl_float limit;    ///< what is nearer to the light than this blocks it
+    cl_float light;    ///< the part of the light's intensity that it reflects if nothing blocks it
+};
+CELLIST_STRUCT(Receiver, triangle, texel, limit, light);
 
 /// The samples of a pixel.
 struct Sampling {

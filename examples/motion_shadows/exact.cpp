@@ -6,10 +6,6 @@
 namespace motion {
 namespace {
 
-std::string text_of(std::string_view first, std::string_view second) {
-    return std::string(first) + std::string(second);
-}
-
 class Exact : public ShadowMethod {
 public:
     explicit Exact(const Frame& f)
@@ -17,17 +13,17 @@ public:
                   {.storage = f.settings.storage, .budget_bytes = f.settings.budget_bytes}),
           pieces_(f.device, {f.texels()}, {.storage = f.settings.storage}),
           sweep_(f.device, kernels::sweep_exact_cl, ranges_),
-          test_ranges_(f.device, text_of(kernels::test_exact_cl, kernels::test_clh), ranges_),
+          test_ranges_(f.device, kernels::test_exact_cl, ranges_),
           compress_(moving_kernel(f.device, kernels::compress_cl, "compress_ranges", pieces_,
                                   ranges_)),
-          test_pieces_(f.device, text_of(kernels::test_pieces_cl, kernels::test_clh), pieces_) {}
+          test_pieces_(f.device, kernels::test_pieces_cl, pieces_) {}
 
     void mark_shadows(Frame& frame, const Sampling& batch, support::PassTimes* times) override {
         if (frame.settings.budget_bytes != no_budget) {
             size_.slices = 0;
             size_.pieces = 0;
             report_ = ranges_.build_slices(
-                [&] { sweep_.run(frame.scene, frame.light, ranges_, frame.wanted); },
+                [&] { sweep_.run(frame.scene, frame.light, ranges_, frame.farthest); },
                 [&](const cellist::Slice& slice) {
                     ++size_.slices;
                     sort_and_compress(frame, slice.first_cell, slice.cells, nullptr);
@@ -39,7 +35,7 @@ public:
         if (batch.first == 0) {
             size_.pieces = 0;
             report_ = ranges_.build(
-                [&] { sweep_.run(frame.scene, frame.light, ranges_, frame.wanted); });
+                [&] { sweep_.run(frame.scene, frame.light, ranges_, frame.farthest); });
             if (times != nullptr) times->end("ranges");
             sort_and_compress(frame, 0, frame.texels(), times);
         }
@@ -58,7 +54,11 @@ public:
 private:
     void sort_and_compress(Frame& frame, std::size_t first, std::size_t texels,
                            support::PassTimes* times) {
-        ranges_.sort(&VisibleRange::begin);
+        // On a processor, a work-item sorts each of these lists faster.
+        if (frame.device.info().one_thread_per_work_group)
+            ranges_.sort_async(&VisibleRange::begin);
+        else
+            ranges_.sort(&VisibleRange::begin);
         if (times != nullptr) times->end("sort");
         if (!frame.settings.compress) return;
         size_.pieces += pieces_

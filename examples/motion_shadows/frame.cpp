@@ -42,15 +42,21 @@ Frame::Frame(const cellist::Device& its_device, const Scene& its_scene, const Se
              scene.vertex_count),
       light(device, light_view(its_scene.light, s.shadow_map), scene.vertex_count),
       shading(shading_of(its_scene, s)),
-      hits(device, pixels() * std::clamp<std::size_t>(s.samples, 1, batch_samples)),
-      wanted(device, static_cast<std::size_t>(s.shadow_map) * static_cast<std::size_t>(s.shadow_map)) {}
+      keys(device, pixels() * std::clamp<std::size_t>(s.samples, 1, batch_samples)),
+      receivers(device, pixels() * std::clamp<std::size_t>(s.samples, 1, batch_samples)),
+      farthest(device,
+               static_cast<std::size_t>(s.shadow_map) * static_cast<std::size_t>(s.shadow_map)) {}
 
 std::size_t Frame::pixels() const {
     return static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height);
 }
 
-std::string SampleKernel::text_of(std::string_view pass) {
-    return std::string(kernels::receiver_clh) + std::string(pass);
+std::string with_receivers(std::string_view text) {
+    return std::string(kernels::keys_clh) + std::string(kernels::receiver_clh) + std::string(text);
+}
+
+std::string ShadowTest::text_of(std::string_view pass) {
+    return with_receivers(std::string(pass) + std::string(kernels::test_clh));
 }
 
 }  // namespace motion

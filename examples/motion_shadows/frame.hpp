@@ -35,41 +35,17 @@ struct Frame {
     Frame(const cellist::Device& device, const Scene& scene, const Settings& settings);
 
     [[nodiscard]] std::size_t pixels() const;
-    [[nodiscard]] std::size_t texels() const { return wanted.size(); }
+    [[nodiscard]] std::size_t texels() const { return farthest.size(); }
 
     const cellist::Device& device;
     Settings settings;
     SceneBuffers scene;
     SeenScene camera, light;
     Shading shading;
-    cellist::Buffer<cl_uint> hits;     ///< of a batch of samples: see visible.cl
-    cellist::Buffer<cl_uchar> wanted;  ///< texels that shadow tests read
-};
-
-/// A kernel over samples that takes what Receiver needs.
-class SampleKernel {
-public:
-    template <class... Uses>
-    SampleKernel(const cellist::Device& device, std::string_view pass, const std::string& name,
-                 const Uses&... uses)
-        : kernel_(moving_kernel(device, text_of(pass), name, uses...)) {}
-
-    /// `before` and `after` are the arguments around those of RECEIVER_SCENE. Does not block.
-    template <class... Before, class... After>
-    void run(const Frame& f, const cellist::Range& range, const std::tuple<const Before&...>& before,
-             const After&... after) {
-        std::apply(
-            [&](const Before&... first) {
-                kernel_.run(range, first..., f.camera.view, f.camera.vertices, f.light.view,
-                            f.light.vertices, f.scene.indices, f.scene.begin, f.scene.end,
-                            f.shading, after...);
-            },
-            before);
-    }
-
-private:
-    [[nodiscard]] static std::string text_of(std::string_view pass);
-    cellist::Kernel kernel_;
+    cellist::Buffer<cl_ulong> keys;       ///< what the camera sees at a batch of samples
+    cellist::Buffer<Receiver> receivers;  ///< of a batch of samples: see visible.cl
+    /// Of each texel: what is farther from the light blocks nothing.
+    cellist::Buffer<cl_float> farthest;
 };
 
 /// The shadow test of a method: `pass` is its text, see test.clh.
@@ -77,19 +53,24 @@ class ShadowTest {
 public:
     template <class... Uses>
     ShadowTest(const cellist::Device& device, std::string_view pass, const Uses&... uses)
-        : kernel_(device, pass, "test_samples", uses...) {}
+        : kernel_(moving_kernel(device, text_of(pass), "test_samples", uses...)) {}
 
-    /// Marks the hits of a batch that are in shadow, of those whose texel is one of `texels` from
+    /// Marks the samples of a batch that are in shadow, of those whose texel is one of `texels` from
     /// `first_texel` on. `targets` are the arguments of the pass. Does not block.
     template <class... Targets>
     void run(const Frame& f, const Sampling& batch, std::size_t first_texel, std::size_t texels,
              const Targets&... targets) {
-        kernel_.run(f, cellist::Range{f.pixels(), batch.count}, std::tie(targets...), batch,
-                    static_cast<cl_uint>(first_texel), static_cast<cl_uint>(texels), f.hits);
+        kernel_.run(cellist::Range{f.pixels(), batch.count}, targets..., f.light.view,
+                    f.light.vertices, f.scene.indices, batch, static_cast<cl_uint>(f.pixels()),
+                    static_cast<cl_uint>(first_texel), static_cast<cl_uint>(texels), f.receivers);
     }
 
 private:
-    SampleKernel kernel_;
+    [[nodiscard]] static std::string text_of(std::string_view pass);
+    cellist::Kernel kernel_;
 };
+
+/// The text of a kernel after what it needs to know of receivers.
+[[nodiscard]] std::string with_receivers(std::string_view text);
 
 }  // namespace motion

@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
         if (o == "map") s.shadow_map = int(v);
         if (o == "compress") s.compress = v != 0;
         if (o == "prepass") s.prepass = v != 0;
+        if (o == "storage") s.storage = v == 1 ? cellist::Storage::counted : v == 2 ? cellist::Storage::fixed : cellist::Storage::linked;
         if (o == "tol") s.tolerance = float(v);
         if (o == "bias") s.bias = float(v);
         if (o == "budget") s.budget_bytes = std::uint64_t(v);
@@ -48,7 +49,7 @@ int main(int argc, char** argv) {
         r.draw(*m, &t);
         for (auto& [p, ms] : t.all()) std::printf("%-12s %8.2f ms\n", p.c_str(), ms);
         const auto z = m->size();
-        std::printf("candidates %llu %.1f MB  ranges %llu pieces %llu bytes %.1f MB slices %llu refused %llu\n", (unsigned long long)r.candidates().stored, r.candidate_bytes()/1e6, (unsigned long long)z.ranges,
+        std::printf("ranges %llu pieces %llu bytes %.1f MB slices %llu refused %llu\n", (unsigned long long)z.ranges,
                     (unsigned long long)z.pieces, z.bytes / 1e6, (unsigned long long)z.slices, (unsigned long long)z.refused);
         picture = r.picture().download();
     }

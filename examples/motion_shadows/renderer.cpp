@@ -1,6 +1,7 @@
 #include "renderer.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "motion_kernels.hpp"
 
@@ -8,16 +9,12 @@ namespace motion {
 
 Renderer::Renderer(const cellist::Device& device, const Scene& scene, const Settings& settings)
     : frame_(device, scene, settings),
-      candidates_(device,
-                  {static_cast<std::size_t>(settings.width),
-                   static_cast<std::size_t>(settings.height)},
-                  {.storage = settings.storage}),
-      sweep_(device, kernels::sweep_candidates_cl, candidates_),
+      sweep_(device, kernels::sweep_camera_cl),
       project_(moving_kernel(device, kernels::project_cl, "project_vertices")),
-      find_visible_(moving_kernel(device, kernels::visible_cl, "find_visible", candidates_)),
-      mark_wanted_(device, kernels::shade_cl, "mark_wanted"),
-      add_samples_(device, kernels::shade_cl, "add_samples"),
-      finish_(moving_kernel(device, kernels::finish_cl, "finish_picture")),
+      make_receivers_(
+          moving_kernel(device, with_receivers(kernels::visible_cl), "make_receivers")),
+      add_samples_(moving_kernel(device, with_receivers(kernels::shade_cl), "add_samples")),
+      finish_(moving_kernel(device, with_receivers(kernels::shade_cl), "finish_picture")),
       sums_(device, frame_.pixels()),
       picture_(device, frame_.pixels()) {}
 
@@ -34,8 +31,12 @@ void Renderer::project() {
 }
 
 void Renderer::find_visible(const Sampling& batch) {
-    find_visible_.run(cellist::Range::padded(frame_.pixels(), 64), candidates_, frame_.camera.view,
-                      frame_.camera.vertices, frame_.scene.indices, batch, frame_.hits);
+    Frame& f = frame_;
+    f.keys.fill(no_key);
+    sweep_.run(f.scene, f.camera, f.keys, batch);
+    make_receivers_.run(cellist::Range{f.pixels(), batch.count}, f.camera.view, f.camera.vertices,
+                        f.light.view, f.light.vertices, f.scene.indices, f.scene.begin, f.scene.end,
+                        f.shading, batch, f.keys, f.receivers, f.farthest);
 }
 
 void Renderer::draw(ShadowMethod& method, support::PassTimes* times) {
@@ -43,34 +44,26 @@ void Renderer::draw(ShadowMethod& method, support::PassTimes* times) {
         if (times != nullptr) times->end(pass);
     };
     const cl_uint samples = frame_.settings.samples;
+    const auto pixels = static_cast<cl_uint>(frame_.pixels());
     project();
     end("project");
-    report_ = candidates_.build([&] { sweep_.run(frame_.scene, frame_.camera, candidates_); });
-    end("candidates");
-    const bool needs_prepass = frame_.settings.prepass;
+    frame_.farthest.fill(frame_.settings.prepass ? 0.0F : std::numeric_limits<cl_float>::infinity());
+    // The shadow map is for the receivers of all batches.
     const bool is_one_batch = samples <= batch_samples;
-    frame_.wanted.fill(static_cast<cl_uchar>(needs_prepass ? 0 : 1));
-    for (cl_uint first = 0; first < samples; first += batch_samples) {
-        if (!needs_prepass && !is_one_batch) break;
-        find_visible(batch(first));
-        end("visible");
-        if (!needs_prepass) continue;
-        mark_wanted_.run(frame_, cellist::Range{frame_.pixels(), batch(first).count}, std::tie(),
-                         batch(first), frame_.hits, frame_.wanted);
-        end("prepass");
-    }
+    if (frame_.settings.prepass || is_one_batch)
+        for (cl_uint first = 0; first < samples; first += batch_samples) find_visible(batch(first));
+    end("visible");
     for (cl_uint first = 0; first < samples; first += batch_samples) {
         if (!is_one_batch) {
             find_visible(batch(first));
             end("visible");
         }
         method.mark_shadows(frame_, batch(first), times);
-        add_samples_.run(frame_, cellist::Range::padded(frame_.pixels(), 64), std::tie(),
-                         batch(first), frame_.hits, frame_.scene.albedos, sums_);
+        add_samples_.run(cellist::Range::padded(pixels, 64), frame_.shading, batch(first),
+                         frame_.receivers, frame_.scene.albedos, pixels, sums_);
         end("shade");
     }
-    finish_.run(cellist::Range::padded(frame_.pixels(), 64), sums_,
-                static_cast<cl_uint>(frame_.pixels()), samples, picture_);
+    finish_.run(cellist::Range::padded(pixels, 64), sums_, pixels, samples, picture_);
     end("shade");
 }
 

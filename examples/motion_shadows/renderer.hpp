@@ -12,7 +12,7 @@
 namespace motion {
 
 /// Samples of each pixel that are drawn at once; more are drawn in batches.
-constexpr std::size_t batch_samples = 64;
+constexpr std::size_t batch_samples = 32;
 
 /// Draws a scene with motion blur: several samples of each pixel, each at its own time.
 class Renderer {
@@ -25,9 +25,6 @@ public:
     [[nodiscard]] Frame& frame() { return frame_; }
     /// Linear RGB, and the part of the samples that are in shadow; row by row from the top.
     [[nodiscard]] const cellist::Buffer<cl_float4>& picture() const { return picture_; }
-    /// Of the lists of candidates.
-    [[nodiscard]] const cellist::BuildReport& candidates() const { return report_; }
-    [[nodiscard]] std::uint64_t candidate_bytes() const { return candidates_.pool_bytes(); }
 
 private:
     [[nodiscard]] Sampling batch(cl_uint first) const;
@@ -35,13 +32,10 @@ private:
     void find_visible(const Sampling& batch);
 
     Frame frame_;
-    cellist::Lists<Candidate> candidates_;
-    cellist::BuildReport report_;
     Sweep sweep_;
     cellist::Kernel project_;
-    cellist::Kernel find_visible_;
-    SampleKernel mark_wanted_;
-    SampleKernel add_samples_;
+    cellist::Kernel make_receivers_;
+    cellist::Kernel add_samples_;
     cellist::Kernel finish_;
     cellist::Buffer<cl_float4> sums_;
     cellist::Buffer<cl_float4> picture_;

@@ -11,7 +11,7 @@ public:
     explicit Still(const Frame& f)
         : keys_(f.device, f.texels()),
           sweep_(f.device, kernels::sweep_still_cl),
-          test_(f.device, std::string(kernels::test_still_cl) + std::string(kernels::test_clh)) {}
+          test_(f.device, kernels::test_still_cl) {}
 
     void mark_shadows(Frame& frame, const Sampling& batch, support::PassTimes* times) override {
         if (batch.first == 0) {

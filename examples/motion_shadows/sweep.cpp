@@ -11,8 +11,8 @@
 namespace motion {
 namespace {
 
-// Triangles that sweep over many pixels are shared out while there is room for these parts.
-constexpr std::size_t parts_max = 65536;
+// Triangles that sweep over many pixels are divided while there is room for these tiles.
+constexpr std::size_t tiles_max = 1 << 20;
 
 // Hits keep a bit for themselves.
 constexpr std::size_t triangles_max = 0x7FFFFFFE;
@@ -58,7 +58,7 @@ std::vector<cl_float4> albedos_of(const Scene& scene) {
 cellist::Range whole_device(const cellist::DeviceInfo& device) {
     const std::size_t group = device.one_thread_per_work_group ? 1 : 64;
     const std::size_t groups =
-        std::size_t{device.compute_units} * (device.one_thread_per_work_group ? 4 : 16);
+        std::size_t{device.compute_units} * (device.one_thread_per_work_group ? 16 : 32);
     return cellist::Range::padded(groups * group, group);
 }
 
@@ -68,8 +68,10 @@ std::string with_moving(std::string_view text) {
     return "#include <cellist/lists.clh>\n" + std::string(kernels::moving_clh) + std::string(text);
 }
 
-std::string Sweep::text_of(std::string_view pass) {
-    return std::string(kernels::exact_clh) + std::string(pass) + std::string(kernels::sweep_clh);
+std::string Sweep::text_of(const cellist::Device& device, std::string_view pass) {
+    const char* alone = device.info().one_thread_per_work_group ? "4096" : "16";
+    return std::string("#define SWEEP_PIXELS_ALONE ") + alone + "\n" + std::string(kernels::exact_clh) +
+           std::string(kernels::keys_clh) + std::string(pass) + std::string(kernels::sweep_clh);
 }
 
 SceneBuffers::SceneBuffers(const cellist::Device& device, const Scene& scene)
@@ -79,8 +81,8 @@ SceneBuffers::SceneBuffers(const cellist::Device& device, const Scene& scene)
       end(device, floats_of(scene.end)),
       indices(device, indices_of(scene)),
       albedos(device, albedos_of(scene)),
-      parts(device, parts_max),
-      part_count(device, 1),
-      parts_range(whole_device(device.info())) {}
+      tiles(device, tiles_max),
+      tile_count(device, 1),
+      tiles_range(whole_device(device.info())) {}
 
 }  // namespace motion

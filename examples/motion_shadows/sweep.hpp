@@ -20,8 +20,8 @@ template <class... Uses>
                                             const std::string& name, const Uses&... uses) {
     return cellist::Kernel(device, cellist::Source{.text = with_moving(text), .file_name = name},
                            name, cellist::type<View>, cellist::type<MovingVertex>,
-                           cellist::type<SweepPart>, cellist::type<Sampling>,
-                           cellist::type<Shading>, uses...);
+                           cellist::type<SweepTile>, cellist::type<Sampling>,
+                           cellist::type<Shading>, cellist::type<Receiver>, uses...);
 }
 
 /// The triangles of a scene on the device, and what sweeping over them needs.
@@ -32,9 +32,9 @@ struct SceneBuffers {
     cellist::Buffer<cl_float> begin, end;   ///< 3 a vertex
     cellist::Buffer<cl_uint> indices;       ///< 3 a triangle
     cellist::Buffer<cl_float4> albedos;     ///< of the triangles: linear RGB, and 1
-    cellist::Buffer<SweepPart> parts;
-    cellist::Buffer<cl_uint> part_count;
-    cellist::Range parts_range;
+    cellist::Buffer<SweepTile> tiles;
+    cellist::Buffer<cl_uint> tile_count;
+    cellist::Range tiles_range;
 };
 
 /// The key of a pixel where sweep_still.cl finds nothing. Its depth is NaN.
@@ -54,25 +54,26 @@ public:
     /// `pass` is the text of the pass. `uses` as in cellist::Kernel.
     template <class... Uses>
     Sweep(const cellist::Device& device, std::string_view pass, const Uses&... uses)
-        : sweep_(moving_kernel(device, text_of(pass), "sweep", uses...)),
-          sweep_parts_(moving_kernel(device, text_of(pass), "sweep_parts", uses...)) {}
+        : sweep_(moving_kernel(device, text_of(device, pass), "sweep", uses...)),
+          sweep_tiles_(moving_kernel(device, text_of(device, pass), "sweep_tiles", uses...)) {}
 
     /// Does not block. `targets` are the arguments of the pass.
     template <class... Targets>
     void run(SceneBuffers& scene, const SeenScene& seen, const Targets&... targets) {
-        const auto room = static_cast<cl_uint>(scene.parts.size());
-        scene.part_count.fill(0);
+        const auto room = static_cast<cl_uint>(scene.tiles.size());
+        scene.tile_count.fill(0);
         sweep_.run(cellist::Range::padded(scene.triangle_count, 64), targets..., seen.view,
-                   seen.vertices, scene.indices, scene.triangle_count, scene.parts, room,
-                   scene.part_count);
-        sweep_parts_.run(scene.parts_range, targets..., seen.view, seen.vertices, scene.indices,
-                         scene.parts, room, scene.part_count);
+                   seen.vertices, scene.indices, scene.triangle_count, scene.tiles, room,
+                   scene.tile_count);
+        sweep_tiles_.run(scene.tiles_range, targets..., seen.view, seen.vertices, scene.indices,
+                         scene.tiles, room, scene.tile_count);
     }
 
 private:
-    [[nodiscard]] static std::string text_of(std::string_view pass);
+    [[nodiscard]] static std::string text_of(const cellist::Device& device,
+                                             std::string_view pass);
     cellist::Kernel sweep_;
-    cellist::Kernel sweep_parts_;
+    cellist::Kernel sweep_tiles_;
 };
 
 }  // namespace motion

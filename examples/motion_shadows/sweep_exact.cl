@@ -1,6 +1,6 @@
 // Pass: the times at which triangles cover the centres of texels.
-#define SWEEP_TARGET CELLIST_LISTS(VisibleRange, ranges), global const uchar *wanted
-#define SWEEP_TARGET_PASS CELLIST_PASS(ranges), wanted
+#define SWEEP_TARGET CELLIST_LISTS(VisibleRange, ranges), global const float *farthest
+#define SWEEP_TARGET_PASS CELLIST_PASS(ranges), farthest
 #define SWEEP_REACH 0.0f
 
 static inline void sweep_refuse(SWEEP_TARGET) {
@@ -11,9 +11,12 @@ static inline void sweep_refuse(SWEEP_TARGET) {
 static inline void sweep_pixel(SWEEP_TARGET, const View view, const MovingTriangle* t, int x,
                                int y) {
     const uint texel = (uint)(y * view.width + x);
-    if (!wanted[texel]) return;
+    const float limit = farthest[texel];
+    if (!(triangle_least_depth(t) < limit)) return;
+    const float2 place = pixel_centre(view, x, y);
+    const float2 near = touching_times(t, place, 0x1p-7f);
     VisibleTimes times;
-    if (!visible_begin(&times, t, pixel_centre(view, x, y))) return;
+    if (near.x > near.y || !visible_begin(&times, t, place)) return;
     float2 time;
     while (visible_next(&times, &time)) {
         const VisibleRange range = {time.x, time.y, t->number};

@@ -3,8 +3,8 @@
 // triangles", 2007; McGuire, Enderton, Shirley, Luebke: "Real-time stochastic rasterization on
 // conventional GPU architectures", 2010). depths[sample * texels + texel]
 #define SWEEP_TARGET                                                                               \
-    volatile global uint *depths, global const uchar *wanted, const Sampling sampling
-#define SWEEP_TARGET_PASS depths, wanted, sampling
+    volatile global uint *depths, global const float *farthest, const Sampling sampling
+#define SWEEP_TARGET_PASS depths, farthest, sampling
 #define SWEEP_REACH 0.0f
 
 static inline void sweep_refuse(SWEEP_TARGET) {}
@@ -12,23 +12,17 @@ static inline void sweep_refuse(SWEEP_TARGET) {}
 static inline void sweep_pixel(SWEEP_TARGET, const View view, const MovingTriangle* t, int x,
                                int y) {
     const uint texel = (uint)(y * view.width + x);
-    if (!wanted[texel]) return;
+    if (!(triangle_least_depth(t) < farthest[texel])) return;
     const float2 place = pixel_centre(view, x, y);
-    const float2 times = touching_times(t, place, 0x1p-7f);
-    if (times.x > times.y) return;
-    const uint end = min((uint)(times.y * (float)sampling.samples) + 1u,
-                         sampling.first + sampling.count);
-    const uint begin = max((uint)(times.x * (float)sampling.samples), sampling.first);
-    for (uint sample = begin; sample < end; ++sample) {
-        const float time = sample_time(texel, sample, sampling.samples, 1);
-        uint sides;
-        float3 vertex_depths;
-        triangle_weights(t, place, time, &sides, &vertex_depths);
-        if (sides != 0 && sides != 7) continue;
-        const float depth = triangle_depth(t, place, time);
-        if (!(depth >= view.near_depth)) continue;
+    const uint2 range = touching_samples(t, place, 0x1p-7f, sampling);
+    for (uint sample = range.x; sample < range.y; ++sample) {
+        float depth;
+        if (!triangle_covers(t, place, sample_time(texel, sample, sampling.samples, 1), &depth) ||
+            !(depth >= view.near_depth))
+            continue;
         volatile global uint* nearest =
             depths + (size_t)(sample - sampling.first) * (uint)(view.width * view.height) + texel;
+        // Positive floats are ordered as their bits are; depths only fall.
         if (as_uint(depth) < *nearest) atomic_min(nearest, as_uint(depth));
     }
 }

@@ -2,16 +2,17 @@
 #define TEST_TARGET CELLIST_LISTS(VisibleRange, ranges)
 #define TEST_TARGET_PASS CELLIST_PASS(ranges)
 
-static inline int is_blocked(TEST_TARGET, const View light, global const MovingVertex* lit,
-                             global const uint* indices, const Receiver* r, uint sample) {
-    cellist_for_each(ranges, (uint)r->texel, node) {
+static inline int is_blocked(TEST_TARGET, TEST_LIGHT, const Receiver r, float time,
+                             uint sample) {
+    const float2 place = pixel_centre(light, (int)r.texel % light.width, (int)r.texel / light.width);
+    cellist_for_each(ranges, r.texel, node) {
         const VisibleRange range = cellist_get(ranges, node);
-        if (range.begin > r->time) return 0;  // and all others, for they are sorted
-        if (range.end <= r->time || range.triangle == r->triangle) continue;
+        if (range.begin > time) return 0;  // and all others, for they are sorted
+        if (range.end <= time || range.triangle == r.triangle) continue;
         MovingTriangle t;
         triangle_load(&t, lit, indices, range.triangle);
-        const float depth = triangle_depth(&t, r->place, r->time);
-        if (depth >= light.near_depth && depth < r->limit) return 1;
+        const float depth = triangle_depth(&t, place, time);
+        if (depth >= light.near_depth && depth < r.limit) return 1;
     }
     return 0;
 }

@@ -2,13 +2,13 @@
 #define TEST_TARGET CELLIST_LISTS(DepthPiece, pieces)
 #define TEST_TARGET_PASS CELLIST_PASS(pieces)
 
-static inline int is_blocked(TEST_TARGET, const View light, global const MovingVertex* lit,
-                             global const uint* indices, const Receiver* r, uint sample) {
-    cellist_for_each(pieces, (uint)r->texel, node) {
+static inline int is_blocked(TEST_TARGET, TEST_LIGHT, const Receiver r, float time,
+                             uint sample) {
+    cellist_for_each(pieces, r.texel, node) {
         const DepthPiece piece = cellist_get(pieces, node);
-        if (!(piece.begin <= r->time && r->time < piece.end)) continue;
-        const float part = (r->time - piece.begin) / (piece.end - piece.begin);
-        if (fma(part, piece.depth_end - piece.depth_begin, piece.depth_begin) < r->limit) return 1;
+        if (!(piece.begin <= time && time < piece.end)) continue;
+        const float part = (time - piece.begin) / (piece.end - piece.begin);
+        if (fma(part, piece.depth_end - piece.depth_begin, piece.depth_begin) < r.limit) return 1;
     }
     return 0;
 }

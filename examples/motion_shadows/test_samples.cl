@@ -2,8 +2,8 @@
 #define TEST_TARGET global const uint* depths
 #define TEST_TARGET_PASS depths
 
-static inline int is_blocked(TEST_TARGET, const View light, global const MovingVertex* lit,
-                             global const uint* indices, const Receiver* r, uint sample) {
-    return as_float(depths[(size_t)sample * (uint)(light.width * light.height) + (uint)r->texel]) <
-           r->limit;
+static inline int is_blocked(TEST_TARGET, TEST_LIGHT, const Receiver r, float time,
+                             uint sample) {
+    return as_float(depths[(size_t)sample * (uint)(light.width * light.height) + r.texel]) <
+           r.limit;
 }

@@ -2,7 +2,7 @@
 #define TEST_TARGET global const ulong* keys
 #define TEST_TARGET_PASS keys
 
-static inline int is_blocked(TEST_TARGET, const View light, global const MovingVertex* lit,
-                             global const uint* indices, const Receiver* r, uint sample) {
-    return as_float((uint)(keys[r->texel] >> 32)) < r->limit;
+static inline int is_blocked(TEST_TARGET, TEST_LIGHT, const Receiver r, float time,
+                             uint sample) {
+    return as_float((uint)(keys[r.texel] >> 32)) < r.limit;
 }

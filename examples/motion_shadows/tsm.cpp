@@ -17,11 +17,11 @@ public:
         : depths_(f.device,
                   f.texels() * std::clamp<std::size_t>(f.settings.samples, 1, batch_samples)),
           sweep_(f.device, kernels::sweep_samples_cl),
-          test_(f.device, std::string(kernels::test_samples_cl) + std::string(kernels::test_clh)) {}
+          test_(f.device, kernels::test_samples_cl) {}
 
     void mark_shadows(Frame& frame, const Sampling& batch, support::PassTimes* times) override {
         depths_.fill(no_depth);
-        sweep_.run(frame.scene, frame.light, depths_, frame.wanted, batch);
+        sweep_.run(frame.scene, frame.light, depths_, frame.farthest, batch);
         if (times != nullptr) times->end("shadow map");
         test_.run(frame, batch, 0, frame.texels(), depths_);
         if (times != nullptr) times->end("test");
