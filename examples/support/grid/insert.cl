@@ -32,11 +32,13 @@ typedef struct {
 #endif
 
 // The line through a and b. The third corner tells which side is outside: the sign of the area
-// would be wrong for needles.
+// would be wrong for needles. Where rounding hides the side, the lines keep the direction of the
+// corners, so that two that coincide bound a strip.
 static GridEdge grid_edge(GRID_REAL2 a, GRID_REAL2 b, GRID_REAL2 third, GRID_REAL margin) {
     GRID_REAL2 n = (GRID_REAL2)(a.y - b.y, b.x - a.x);
-    if (dot(n, third - a) < 0) n = -n;
+    const GRID_REAL2 apart = third - a;
     const GRID_REAL size = fabs(n.x) + fabs(n.y);
+    if (dot(n, apart) < -size * (fabs(apart.x) + fabs(apart.y)) * (GRID_REAL)GRID_ROUNDING) n = -n;
     const GRID_REAL offset =
         fmax(n.x, (GRID_REAL)0) + fmax(n.y, (GRID_REAL)0) - dot(n, a) + size * margin;
     // The size may leave the range of floats; the cell then counts as inside.
