@@ -3,7 +3,7 @@
 // time is left out.
 
 // Merged ranges that are still growing in a texel.
-#define OPEN_MAX 6
+#define OPEN_MAX 4
 // A range is divided into at most so many parts of linear depth.
 #define LINEAR_PARTS_MAX 16
 
@@ -50,48 +50,48 @@ static inline int open_extend(OpenPiece* p, float middle_time, float middle, flo
 
 // Takes piece `which` out: stores it, unless another one hides it.
 static inline void close_piece(CELLIST_LISTS(DepthPiece, pieces), uint texel, OpenPiece* open,
-                               int which) {
+                               const int which) {
     const OpenPiece p = open[which];
     open[which].end = -1.0f;
+#pragma unroll
     for (int k = 0; k < OPEN_MAX; ++k)
         if (open[k].end >= 0.0f && open_hides(&open[k], &p)) return;
     const DepthPiece piece = {p.begin, p.end, p.depth, open_depth(&p, p.end)};
     cellist_insert(pieces, texel, piece);
 }
 
-static inline int first_to_end(const OpenPiece* open) {
-    int which = 0;
-    for (int k = 1; k < OPEN_MAX; ++k)
-        if (open[k].end >= 0.0f && (open[which].end < 0.0f || open[k].end < open[which].end))
-            which = k;
-    return which;
-}
+// A stretch of time in which the depth of a triangle is nearly linear.
+typedef struct {
+    float begin, end;
+    float at_begin, at_middle, at_end;  // the depth
+} Stretch;
 
-// Adds a stretch of time in which the depth is nearly linear.
 static inline void add_stretch(CELLIST_LISTS(DepthPiece, pieces), uint texel, OpenPiece* open,
-                               const MovingTriangle* t, const View light, float2 place, float begin,
-                               float end, float tolerance_texels) {
-    const float at_begin = triangle_depth(t, place, begin);
-    const float middle_time = 0.5f * (begin + end), middle = triangle_depth(t, place, middle_time);
-    const float at_end = triangle_depth(t, place, end);
-    if (!(middle >= light.near_depth)) return;
-    const float tolerance =
-        tolerance_texels * (light.is_parallel ? light.pixel : light.pixel * middle);
+                               const Stretch s, float tolerance) {
+    const float middle = 0.5f * (s.begin + s.end);
+#pragma unroll
     for (int k = 0; k < OPEN_MAX; ++k)
-        if (open[k].end == begin && fabs(open[k].last - at_begin) <= tolerance &&
-            open_extend(&open[k], middle_time, middle, end, at_end, tolerance))
+        if (open[k].end == s.begin && fabs(open[k].last - s.at_begin) <= tolerance &&
+            open_extend(&open[k], middle, s.at_middle, s.end, s.at_end, tolerance))
             return;
-    int which = first_to_end(open);
-    for (int k = 0; k < OPEN_MAX; ++k)
-        if (open[k].end < 0.0f) which = k;
-    if (open[which].end >= 0.0f) close_piece(CELLIST_PASS(pieces), texel, open, which);
-    const OpenPiece fresh = {begin, begin, at_begin, at_begin, -INFINITY, INFINITY};
-    open[which] = fresh;
-    if (!open_extend(&open[which], middle_time, middle, end, at_end, tolerance)) {
-        open[which].end = end;
-        open[which].last = at_end;
-        open[which].least_slope = open[which].most_slope = (at_end - at_begin) / (end - begin);
+    OpenPiece fresh = {s.begin, s.begin, s.at_begin, s.at_begin, -INFINITY, INFINITY};
+    if (!open_extend(&fresh, middle, s.at_middle, s.end, s.at_end, tolerance)) {
+        fresh.end = s.end;
+        fresh.last = s.at_end;
+        fresh.least_slope = fresh.most_slope = (s.at_end - s.at_begin) / (s.end - s.begin);
     }
+    // The one that ended first makes room; those that are closed have ended at -1.
+    float first_end = open[0].end;
+#pragma unroll
+    for (int k = 1; k < OPEN_MAX; ++k) first_end = fmin(first_end, open[k].end);
+    int is_placed = 0;
+#pragma unroll
+    for (int k = 0; k < OPEN_MAX; ++k)
+        if (!is_placed && open[k].end == first_end) {
+            if (first_end >= 0.0f) close_piece(CELLIST_PASS(pieces), texel, open, k);
+            open[k] = fresh;
+            is_placed = 1;
+        }
 }
 
 // One work-item a texel.
@@ -103,38 +103,40 @@ kernel void compress_ranges(CELLIST_LISTS(DepthPiece, pieces), CELLIST_LISTS(Vis
     const uint texel = first_texel + get_global_id(0);
     const float2 place = pixel_centre(light, (int)texel % light.width, (int)texel / light.width);
     OpenPiece open[OPEN_MAX];
+#pragma unroll
     for (int k = 0; k < OPEN_MAX; ++k) open[k].end = -1.0f;
     cellist_for_each(ranges, texel, node) {
         const VisibleRange range = cellist_get(ranges, node);
         // What ended before cannot grow any more.
-        for (int k = 0; k < OPEN_MAX; ++k) {
-            const int which = first_to_end(open);
-            if (open[which].end < 0.0f || open[which].end >= range.begin) break;
-            close_piece(CELLIST_PASS(pieces), texel, open, which);
-        }
+#pragma unroll
+        for (int k = 0; k < OPEN_MAX; ++k)
+            if (open[k].end >= 0.0f && open[k].end < range.begin)
+                close_piece(CELLIST_PASS(pieces), texel, open, k);
         MovingTriangle t;
         triangle_load(&t, lit, indices, range.triangle);
+        Stretch s = {range.begin, range.end, 0.0f, 0.0f, 0.0f};
+        s.at_begin = triangle_depth(&t, place, s.begin);
+        s.at_middle = triangle_depth(&t, place, 0.5f * (s.begin + s.end));
+        s.at_end = triangle_depth(&t, place, s.end);
+        if (!(fmin(s.at_begin, fmin(s.at_middle, s.at_end)) >= light.near_depth)) continue;
+        const float error = tolerance * (light.is_parallel ? light.pixel : light.pixel * s.at_middle);
         // The deviation from a line falls with the square of the length.
-        const float size = light.is_parallel ? light.pixel : light.pixel * t.begin[0].w;
-        const float a = triangle_depth(&t, place, range.begin);
-        const float b = triangle_depth(&t, place, range.end);
-        const float m = triangle_depth(&t, place, 0.5f * (range.begin + range.end));
-        const float parts_wanted = sqrt(fabs(m - 0.5f * (a + b)) / (0.5f * tolerance * size));
-        const int parts = (int)clamp(ceil(parts_wanted), 1.0f, (float)LINEAR_PARTS_MAX);
-        float from = range.begin;
+        const float bend = fabs(s.at_middle - 0.5f * (s.at_begin + s.at_end));
+        const int parts = (int)clamp(ceil(sqrt(2.0f * bend / error)), 1.0f, (float)LINEAR_PARTS_MAX);
         for (int part = 1; part <= parts; ++part) {
-            const float to = part == parts ? range.end
-                                           : fma((float)part / (float)parts,
-                                                 range.end - range.begin, range.begin);
-            if (to > from)
-                add_stretch(CELLIST_PASS(pieces), texel, open, &t, light, place, from, to,
-                            tolerance);
-            from = to;
+            if (parts > 1) {
+                s.end = part == parts ? range.end
+                                      : fma((float)part / (float)parts, range.end - range.begin,
+                                            range.begin);
+                s.at_middle = triangle_depth(&t, place, 0.5f * (s.begin + s.end));
+                s.at_end = triangle_depth(&t, place, s.end);
+            }
+            if (s.end > s.begin) add_stretch(CELLIST_PASS(pieces), texel, open, s, error);
+            s.begin = s.end;
+            s.at_begin = s.at_end;
         }
     }
-    for (int k = 0; k < OPEN_MAX; ++k) {
-        const int which = first_to_end(open);
-        if (open[which].end < 0.0f) break;
-        close_piece(CELLIST_PASS(pieces), texel, open, which);
-    }
+#pragma unroll
+    for (int k = 0; k < OPEN_MAX; ++k)
+        if (open[k].end >= 0.0f) close_piece(CELLIST_PASS(pieces), texel, open, k);
 }

@@ -12,7 +12,7 @@
 namespace motion {
 
 /// Samples of each pixel that are drawn at once; more are drawn in batches.
-constexpr std::size_t batch_samples = 32;
+constexpr std::size_t batch_samples = 64;
 
 /// Draws a scene with motion blur: several samples of each pixel, each at its own time.
 class Renderer {

@@ -7,6 +7,7 @@
 
 #include "input_error.hpp"
 #include "motion_kernels.hpp"
+#include "sides.hpp"
 
 namespace motion {
 namespace {
@@ -69,9 +70,11 @@ std::string with_moving(std::string_view text) {
 }
 
 std::string Sweep::text_of(const cellist::Device& device, std::string_view pass) {
-    const char* alone = device.info().one_thread_per_work_group ? "4096" : "16";
-    return std::string("#define SWEEP_PIXELS_ALONE ") + alone + "\n" + std::string(kernels::exact_clh) +
-           std::string(kernels::keys_clh) + std::string(pass) + std::string(kernels::sweep_clh);
+    const char* definitions = device.info().one_thread_per_work_group
+                                  ? "#define SWEEP_PIXELS_ALONE 4096\n"
+                                  : "#define SWEEP_GROUP 64\n#define SWEEP_PIXELS_ALONE 64\n";
+    return definitions + std::string(kernels::exact_clh) + std::string(kernels::keys_clh) +
+           std::string(pass) + std::string(kernels::sweep_clh);
 }
 
 SceneBuffers::SceneBuffers(const cellist::Device& device, const Scene& scene)
@@ -84,5 +87,10 @@ SceneBuffers::SceneBuffers(const cellist::Device& device, const Scene& scene)
       tiles(device, tiles_max),
       tile_count(device, 1),
       tiles_range(whole_device(device.info())) {}
+
+SeenScene::SeenScene(const cellist::Device& device, const Scene& scene, const View& its_view)
+    : view(its_view),
+      vertices(device, scene.begin.size()),
+      sides(device, seen_sides(scene, its_view)) {}
 
 }  // namespace motion

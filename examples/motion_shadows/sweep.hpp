@@ -42,10 +42,10 @@ constexpr cl_ulong no_key = 0x7FFFFFFFFFFFFFFF;
 
 /// A view of the scene.
 struct SeenScene {
-    SeenScene(const cellist::Device& device, const View& its_view, std::size_t vertex_count)
-        : view(its_view), vertices(device, vertex_count) {}
+    SeenScene(const cellist::Device& device, const Scene& scene, const View& its_view);
     View view;
     cellist::Buffer<MovingVertex> vertices;
+    cellist::Buffer<cl_uchar> sides;  ///< of the triangles: see seen_sides()
 };
 
 /// Visits every pixel that each triangle may touch: see sweep.clh.
@@ -63,10 +63,10 @@ public:
         const auto room = static_cast<cl_uint>(scene.tiles.size());
         scene.tile_count.fill(0);
         sweep_.run(cellist::Range::padded(scene.triangle_count, 64), targets..., seen.view,
-                   seen.vertices, scene.indices, scene.triangle_count, scene.tiles, room,
+                   seen.vertices, scene.indices, seen.sides, scene.triangle_count, scene.tiles, room,
                    scene.tile_count);
         sweep_tiles_.run(scene.tiles_range, targets..., seen.view, seen.vertices, scene.indices,
-                         scene.tiles, room, scene.tile_count);
+                         seen.sides, scene.tiles, room, scene.tile_count);
     }
 
 private:

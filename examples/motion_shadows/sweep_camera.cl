@@ -9,13 +9,15 @@
 
 static inline void sweep_refuse(SWEEP_TARGET) {}
 
-static inline void sweep_pixel(SWEEP_TARGET, const View view, const MovingTriangle* t, int x,
-                               int y) {
-    const float2 centre = pixel_centre(view, x, y);
-    const uint2 range = touching_samples(t, centre, 0.5f, sampling);
-    const uint pixel = (uint)(y * view.width + x), pixels = (uint)(view.width * view.height);
-    for (uint sample = range.x; sample < range.y; ++sample)
-        keep_nearest(keys + (size_t)(sample - sampling.first) * pixels + pixel, view, t,
-                     centre + sample_offset(pixel, sample),
-                     sample_time(pixel, sample, sampling.samples, 0));
+static inline uint2 sweep_parts(SWEEP_TARGET, const View view, const MovingTriangle* t, int x,
+                                int y) {
+    return touching_samples(t, pixel_centre(view, x, y), 0.5f, sampling);
+}
+
+static inline void sweep_part(SWEEP_TARGET, const View view, const MovingTriangle* t, int x, int y,
+                              uint part) {
+    const uint pixel = (uint)(y * view.width + x), sample = sampling.first + part;
+    keep_nearest(keys + (size_t)part * (uint)(view.width * view.height) + pixel, view, t,
+                 pixel_centre(view, x, y) + sample_offset(pixel, sample),
+                 sample_time(pixel, sample, sampling.samples, 0));
 }

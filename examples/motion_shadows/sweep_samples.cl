@@ -9,20 +9,22 @@
 
 static inline void sweep_refuse(SWEEP_TARGET) {}
 
-static inline void sweep_pixel(SWEEP_TARGET, const View view, const MovingTriangle* t, int x,
-                               int y) {
+static inline uint2 sweep_parts(SWEEP_TARGET, const View view, const MovingTriangle* t, int x,
+                                int y) {
+    if (!(triangle_least_depth(t) < farthest[y * view.width + x])) return (uint2)(0);
+    return touching_samples(t, pixel_centre(view, x, y), 0x1p-7f, sampling);
+}
+
+static inline void sweep_part(SWEEP_TARGET, const View view, const MovingTriangle* t, int x, int y,
+                              uint part) {
     const uint texel = (uint)(y * view.width + x);
-    if (!(triangle_least_depth(t) < farthest[texel])) return;
-    const float2 place = pixel_centre(view, x, y);
-    const uint2 range = touching_samples(t, place, 0x1p-7f, sampling);
-    for (uint sample = range.x; sample < range.y; ++sample) {
-        float depth;
-        if (!triangle_covers(t, place, sample_time(texel, sample, sampling.samples, 1), &depth) ||
-            !(depth >= view.near_depth))
-            continue;
-        volatile global uint* nearest =
-            depths + (size_t)(sample - sampling.first) * (uint)(view.width * view.height) + texel;
-        // Positive floats are ordered as their bits are; depths only fall.
-        if (as_uint(depth) < *nearest) atomic_min(nearest, as_uint(depth));
-    }
+    float depth;
+    if (!triangle_covers(t, pixel_centre(view, x, y),
+                         sample_time(texel, sampling.first + part, sampling.samples, 1), &depth) ||
+        !(depth >= view.near_depth))
+        return;
+    volatile global uint* nearest =
+        depths + (size_t)part * (uint)(view.width * view.height) + texel;
+    // Positive floats are ordered as their bits are. Depths only fall, so a stale one does no harm.
+    if (as_uint(depth) < *nearest) atomic_min(nearest, as_uint(depth));
 }

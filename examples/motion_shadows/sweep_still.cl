@@ -9,8 +9,13 @@
 
 static inline void sweep_refuse(SWEEP_TARGET) {}
 
-static inline void sweep_pixel(SWEEP_TARGET, const View view, const MovingTriangle* t, int x,
-                               int y) {
+static inline uint2 sweep_parts(SWEEP_TARGET, const View view, const MovingTriangle* t, int x,
+                                int y) {
+    return (uint2)(0, 1);
+}
+
+static inline void sweep_part(SWEEP_TARGET, const View view, const MovingTriangle* t, int x, int y,
+                              uint part) {
     keep_nearest(keys + y * view.width + x, view, t,
                  pixel_centre(view, x, y) + (float2)(offset_x, offset_y), 0.0f);
 }
