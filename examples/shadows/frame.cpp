@@ -37,7 +37,8 @@ std::vector<PlacedMesh> placed_meshes(const Scene& scene) {
     std::vector<PlacedMesh> placed;
     for (const Instance& instance : scene.instances) {
         const glm::dmat4& m = instance.to_world;
-        placed.push_back({row(m, 0), row(m, 1), row(m, 2), float4(glm::dvec3(instance.albedo), 1)});
+        placed.push_back({row(m, 0), row(m, 1), row(m, 2),
+                          float4(glm::dvec3(instance.albedo), instance.blocks ? 1 : 0)});
     }
     return placed;
 }
@@ -159,7 +160,7 @@ Gather gather_of(const Settings& s) {
 
 std::size_t rays_per_pixel(const Gather& gather) {
     const auto rays = static_cast<std::size_t>(gather.samples / gather.interleave);
-    return rays * rays;
+    return 2 * rays * rays;
 }
 
 // Rows of B in a batch of rays, and as many rays.
@@ -278,7 +279,7 @@ Renderer::Renderer(const cellist::Device& device, const Scene& scene, const Sett
           return std::make_unique<grid::TriangleGrid>(device, triangles, cells, settings.storage);
       }()),
       rays_(std::make_unique<grid::Rays>(device, *grid_)),
-      emitters_(device, static_cast<std::size_t>(settings.samples * settings.samples)),
+      emitters_(device, static_cast<std::size_t>(2 * settings.samples * settings.samples)),
       a_(device, pixels_of(gather_)),
       b_(device, static_cast<std::size_t>(b_width()) * static_cast<std::size_t>(b_height())),
       b_all_(device, b_.size()),
@@ -322,7 +323,7 @@ void Renderer::draw(const Scene& scene, PassTimes* times, const TakeRays& take_r
     eye_.draw(nearest_, surface_, clear_, geometry_, placed_meshes_, source_of(scene));
     end("g_buffer");
     light_.draw(nearest_, surface_, clear_, geometry_, placed_meshes_, light);
-    make_emitters_.run(cellist::Range::padded(emitters_.size(), 64), light_.surfaces(), light,
+    make_emitters_.run(cellist::Range::padded(64 * emitters_.size(), 64), light_.surfaces(), light,
                        gather_, emitters_);
     end("shadow_map");
 

@@ -103,6 +103,9 @@ public:
     [[nodiscard]] const cellist::Buffer<cl_float4>& b() const { return b_; }
     [[nodiscard]] const cellist::Buffer<cl_float4>& blurred_b() const { return blurred_; }
     [[nodiscard]] const cellist::Buffer<Surface>& surfaces() const { return eye_.surfaces(); }
+    /// The reflective shadow map.
+    [[nodiscard]] const cellist::Buffer<Surface>& lit() const { return light_.surfaces(); }
+    /// The samples' emitters of walls, then their emitters of blockers, row by row.
     [[nodiscard]] const cellist::Buffer<Emitter>& emitters() const { return emitters_; }
     [[nodiscard]] const grid::TriangleGrid& grid() const { return *grid_; }
     [[nodiscard]] const Gather& gather() const { return gather_; }

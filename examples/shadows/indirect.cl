@@ -22,39 +22,87 @@ kernel void place_blockers(global const Blocker* blockers, uint count,
 
 // ---- the reflective shadow map
 
-// One work-item a sample: the texel in the middle of its part of the map. It stands for all that the
-// part receives.
-kernel void make_emitters(global const Surface* lit, const LightSource light, const Gather gather,
-                          global Emitter* emitters) {
-    const int sample = (int)get_global_id(0);
-    const int side = gather.rsm_side, part = side / gather.samples;
-    if (sample >= gather.samples * gather.samples) return;
-    const int x = sample % gather.samples * part + part / 2;
-    const int y = sample / gather.samples * part + part / 2;
-    const Surface surface = lit[y * side + x];
-    Emitter emitter;
-    emitter.position = surface.position;
-    emitter.normal = surface.normal;
-    emitter.power = (float4)(0.0f);
-    if (surface.position.w > 0.0f) {
-        const float2 image = ((float2)(x, y) + 0.5f) / (float)side;
-        const float2 across = (image - 0.5f) * light.side;
-        // The solid angle of the texel, or its area across the light.
-        const float texel = light.side / (float)side;
-        const float slope = light.is_spot ? rsqrt(1.0f + dot(across, across)) : 1.0f;
-        const float received = texel * texel * slope * slope * slope * light_fade(light, image);
-        const float texels = (float)(part * part);
-        emitter.power = surface.albedo * light.intensity * (received * texels);
-        emitter.power.w = texel * texel * texels *
-                          light_spread(light, surface.position.xyz, slope, surface.normal.xyz) /
-                          M_PI_F;
+// Work-items that share the texels of an emitter.
+#define EMITTER_GROUP 64
+
+// The sum of a value over the work-group, in the same order each time.
+static float4 group_sum(local float4* sums, float4 value) {
+    const uint item = get_local_id(0);
+    sums[item] = value;
+    for (uint count = EMITTER_GROUP / 2; count > 0; count /= 2) {
+        barrier(CLK_LOCAL_MEM_FENCE);
+        if (item < count) sums[item] += sums[item + count];
     }
-    emitters[sample] = emitter;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    const float4 sum = sums[0];
+    barrier(CLK_LOCAL_MEM_FENCE);
+    return sum;
+}
+
+// Emitters of all samples: first those of walls, then those of blockers.
+static int emitter_count(const Gather gather) { return 2 * gather.samples * gather.samples; }
+
+// A texel as an emitter. Its power is 0 if it is not of this kind.
+static Emitter texel_emitter(global const Surface* lit, const LightSource light,
+                             const Gather gather, int2 texel, bool of_blockers) {
+    const Surface surface = lit[texel.y * gather.rsm_side + texel.x];
+    Emitter emitter = {surface.position, surface.normal, (float4)(0.0f)};
+    if (!(surface.position.w > 0.0f) || (surface.albedo.w > 0.0f) != of_blockers) return emitter;
+    const float2 image = (convert_float2(texel) + 0.5f) / (float)gather.rsm_side;
+    const float2 across = (image - 0.5f) * light.side;
+    // The solid angle of the texel, or its area across the light.
+    const float side = light.side / (float)gather.rsm_side;
+    const float slope = light.is_spot ? rsqrt(1.0f + dot(across, across)) : 1.0f;
+    const float received = side * side * slope * slope * slope * light_fade(light, image);
+    emitter.power = surface.albedo * light.intensity * received;
+    emitter.power.w =
+        side * side * light_spread(light, surface.position.xyz, slope, surface.normal.xyz) / M_PI_F;
+    return emitter;
+}
+
+// A work-group an emitter: the mean, by power, of the texels of one kind in a sample's part of the
+// map. Its disc has the second moment of the texels' discs.
+kernel __attribute__((reqd_work_group_size(EMITTER_GROUP, 1, 1))) void make_emitters(
+    global const Surface* lit, const LightSource light, const Gather gather,
+    global Emitter* emitters) {
+    local float4 sums[EMITTER_GROUP];
+    const int item = (int)get_local_id(0), part = gather.rsm_side / gather.samples;
+    const int sample = (int)get_group_id(0) % (gather.samples * gather.samples);
+    const bool of_blockers = (int)get_group_id(0) != sample;
+    const int2 first = (int2)(sample % gather.samples, sample / gather.samples) * part;
+    float4 power = 0.0f, position = 0.0f, normal = 0.0f, squares = 0.0f;
+    for (int i = item; i < part * part; i += EMITTER_GROUP) {
+        const Emitter texel =
+            texel_emitter(lit, light, gather, first + (int2)(i % part, i / part), of_blockers);
+        const float weight = texel.power.x + texel.power.y + texel.power.z;
+        power += (float4)(texel.power.xyz, weight);
+        position += weight * texel.position;
+        normal += weight * texel.normal;
+    }
+    power = group_sum(sums, power);
+    const float all_weight = fmax(power.w, 1e-30f);
+    position = group_sum(sums, position) / all_weight;
+    normal = group_sum(sums, normal);
+    normal *= rsqrt(fmax(dot(normal, normal), 1e-30f));
+    for (int i = item; i < part * part; i += EMITTER_GROUP) {
+        const Emitter texel =
+            texel_emitter(lit, light, gather, first + (int2)(i % part, i / part), of_blockers);
+        const float weight = texel.power.x + texel.power.y + texel.power.z;
+        const float3 off = texel.position.xyz - position.xyz;
+        const float height = dot(off, normal.xyz);
+        squares += weight * (float4)(height * height, dot(off, off), texel.power.w, 0.0f);
+    }
+    squares = group_sum(sums, squares) / all_weight;
+    if (item != 0) return;
+    Emitter emitter = {position, normal, power};
+    emitter.normal.w = gather.bias + 2.0f * sqrt(squares.x);
+    emitter.power.w = 2.0f * squares.y + squares.z;
+    emitters[get_group_id(0)] = emitter;
 }
 
 // ---- buffer A: all indirect light
 
-// One work-item a pixel: the irradiance from all samples, blocked or not.
+// One work-item a pixel: the irradiance from all emitters, blocked or not.
 kernel void gather_unblocked(global const Surface* seen, global const Emitter* emitters,
                              const Gather gather, global float4* a) {
     const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -63,8 +111,8 @@ kernel void gather_unblocked(global const Surface* seen, global const Emitter* e
     const Surface surface = seen[pixel];
     float3 sum = 0.0f;
     if (surface.position.w > 0.0f)
-        for (int sample = 0; sample < gather.samples * gather.samples; ++sample)
-            sum += light_from(emitters[sample], surface.position.xyz, surface.normal.xyz);
+        for (int i = 0; i < emitter_count(gather); ++i)
+            sum += light_from(emitters[i], surface.position.xyz, surface.normal.xyz);
     a[pixel] = (float4)(sum, 1.0f);
 }
 
@@ -81,50 +129,53 @@ static int b_pixel(const Gather gather, int x, int y) {
     return p.y * gather.width + p.x;
 }
 
-// The sample of ray number `ray` of a pixel of B. Neighbours in a square of interleave * interleave
-// take different samples, and all of them together take each sample once (Keller, Heidrich:
-// "Interleaved Sampling", EGWR 2001).
-static int b_sample(const Gather gather, int x, int y, int ray) {
-    const int rays = gather.samples / gather.interleave;  // along each axis
-    const int u = (ray % rays) * gather.interleave + (x + ray / rays) % gather.interleave;
-    const int v = (ray / rays) * gather.interleave + (y + ray % rays) % gather.interleave;
-    return v * gather.samples + u;
+// Rays from a pixel of B to emitters of one kind, along each axis.
+static int b_rays(const Gather gather) { return gather.samples / gather.interleave; }
+// All of them.
+static int b_rays_per_pixel(const Gather gather) { return 2 * b_rays(gather) * b_rays(gather); }
+
+// The emitter of ray number `ray` of a pixel of B. Neighbours in a square of interleave *
+// interleave take different emitters, and all of them together take each emitter once (Keller,
+// Heidrich: "Interleaved Sampling", EGWR 2001).
+static int b_emitter(const Gather gather, int x, int y, int ray) {
+    const int rays = b_rays(gather), i = ray % rays, j = ray / rays % rays;
+    const int u = i * gather.interleave + (x + j) % gather.interleave;
+    const int v = j * gather.interleave + (y + i) % gather.interleave;
+    return (ray / (rays * rays) * gather.samples + v) * gather.samples + u;
 }
 
-// Whether a sample lights a pixel of B at all.
+// Whether an emitter lights a pixel of B at all.
 static int b_is_lit(const Surface surface, const Emitter emitter, const Gather gather) {
     const float3 light = light_from(emitter, surface.position.xyz, surface.normal.xyz);
     return surface.position.w > 0.0f && light.x + light.y + light.z > 0.0f;
 }
 
-// One work-item a ray: from a pixel of B to a sample. Rays without light have length 0. Rays of a
+// One work-item a ray: from a pixel of B to an emitter. Rays without light have length 0. Rays of a
 // batch begin at row first_row of B.
 kernel void make_rays(global const Surface* seen, global const Emitter* emitters,
                       const Gather gather, global GridSegment* rays) {
     const int2 size = b_size(gather);
-    const int per_pixel =
-        (gather.samples / gather.interleave) * (gather.samples / gather.interleave);
     const int i = (int)get_global_id(0);
-    if (i >= size.x * gather.rows * per_pixel) return;
-    // Rays of neighbouring pixels to the same sample follow one another.
+    if (i >= size.x * gather.rows * b_rays_per_pixel(gather)) return;
+    // Rays of neighbouring pixels to the same emitter follow one another.
     const int place = i % (size.x * gather.rows), ray = i / (size.x * gather.rows);
     const int x = place % size.x, y = gather.first_row + place / size.x;
     const Surface surface = seen[b_pixel(gather, x, y)];
-    const Emitter emitter = emitters[b_sample(gather, x, y, ray)];
+    const Emitter emitter = emitters[b_emitter(gather, x, y, ray)];
     GridSegment segment;
     segment.from = surface.position + gather.bias * surface.normal;
     segment.to = b_is_lit(surface, emitter, gather)
-                     ? emitter.position + gather.bias * emitter.normal
+                     ? emitter.position + emitter.normal.w * emitter.normal
                      : segment.from;
     rays[i] = segment;
 }
 
-// One work-item a pixel of B: the light of its samples that are blocked, and of all its samples.
+// One work-item a pixel of B: the light of its emitters that are blocked, and of all its emitters.
 kernel void gather_blocked(global const Surface* seen, global const Emitter* emitters,
                            const Gather gather, global const uint* blocked, global float4* b,
                            global float4* b_all, volatile global uint* counts) {
     const int2 size = b_size(gather);
-    const int rays = (gather.samples / gather.interleave) * (gather.samples / gather.interleave);
+    const int rays = b_rays_per_pixel(gather);
     const int place = (int)get_global_id(0);
     if (place >= size.x * gather.rows) return;
     const int x = place % size.x, y = gather.first_row + place / size.x;
@@ -132,7 +183,7 @@ kernel void gather_blocked(global const Surface* seen, global const Emitter* emi
     float3 sum = 0.0f, all_light = 0.0f;
     uint lit = 0, hidden = 0;
     for (int ray = 0; ray < rays; ++ray) {
-        const Emitter emitter = emitters[b_sample(gather, x, y, ray)];
+        const Emitter emitter = emitters[b_emitter(gather, x, y, ray)];
         if (!b_is_lit(surface, emitter, gather)) continue;
         const float3 light = light_from(emitter, surface.position.xyz, surface.normal.xyz);
         ++lit;
@@ -151,7 +202,7 @@ kernel void gather_blocked(global const Surface* seen, global const Emitter* emi
 // ---- the picture
 
 // The part of the light that is blocked between the pixels of B: over a square that holds every
-// sample equally often, from surfaces like this one only. The part is 1 where all is blocked, and
+// emitter equally often, from surfaces like this one only. The part is 1 where all is blocked, and
 // changes less than the light across curved surfaces.
 static float3 blocked_part(global const Surface* seen, global const float4* b,
                            global const float4* b_all, const Gather gather, const Surface surface,

@@ -141,7 +141,8 @@ Reference reference_with(const Renderer& renderer, const Occluders& occluders) {
     const std::vector<Surface> surfaces = renderer.surfaces().download();
     const std::vector<cl_float4> a = renderer.a().download();
     const std::vector<cl_float4> unblocked = renderer.unblocked().download();
-    const std::vector<Emitter> emitters = renderer.emitters().download();
+    std::vector<Emitter> emitters = renderer.emitters().download();
+    std::erase_if(emitters, [](const Emitter& emitter) { return emitter.power.s[3] == 0; });
     const auto bias = static_cast<double>(renderer.gather().bias);
     const std::size_t step = step_for(
         static_cast<double>(surfaces.size()) * static_cast<double>(emitters.size()), occluders);
@@ -162,7 +163,9 @@ Reference reference_with(const Renderer& renderer, const Occluders& occluders) {
             const glm::dvec3 light = exact_light(emitter, point, normal);
             if (light == glm::dvec3(0)) continue;
             reference.a[i] += light;
-            const glm::vec3 to(vector_of(emitter.position) + bias * vector_of(emitter.normal));
+            const glm::vec3 to(vector_of(emitter.position) +
+                               static_cast<double>(emitter.normal.s[3]) *
+                                   vector_of(emitter.normal));
             if (occluders.block(from, to)) reference.b[i] += light;
         }
         const glm::dvec3 reflected = vector_of(surface.albedo) / std::numbers::pi;

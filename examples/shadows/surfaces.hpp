@@ -8,14 +8,14 @@ namespace shadows {
 struct Surface {
     cl_float4 position;  ///< and 1
     cl_float4 normal;    ///< and 0; towards the viewer
-    cl_float4 albedo;    ///< linear RGB, and 1
+    cl_float4 albedo;    ///< linear RGB; and 1 if it blocks light, else 0
 };
 CELLIST_STRUCT(Surface, position, normal, albedo);
 
 /// A mesh at its place in the world.
 struct PlacedMesh {
     cl_float4 row_x, row_y, row_z;  ///< from the mesh to the world
-    cl_float4 albedo;               ///< linear RGB, and 1
+    cl_float4 albedo;               ///< linear RGB; and 1 if it blocks light, else 0
 };
 CELLIST_STRUCT(PlacedMesh, row_x, row_y, row_z, albedo);
 
@@ -26,11 +26,13 @@ struct Blocker {
 };
 CELLIST_STRUCT(Blocker, instance, triangle);
 
-/// A sample of the reflective shadow map as a source of light: the texel in the middle of its part.
+/// A source of indirect light: a disc. A sample is a square part of the reflective shadow map. One
+/// emitter stands for all texels of the sample that show walls, another one for those that show
+/// blockers. Positions and normals are means, by power.
 struct Emitter {
-    cl_float4 position;  ///< and 1
-    cl_float4 normal;    ///< and 0
-    cl_float4 power;     ///< reflected, linear RGB; and the square of the radius of its disc
+    cl_float4 position;
+    cl_float4 normal;  ///< of length 1; and how far above the position rays end
+    cl_float4 power;   ///< reflected, linear RGB; and the square of the disc's radius
 };
 CELLIST_STRUCT(Emitter, position, normal, power);
 

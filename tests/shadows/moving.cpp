@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "grid/rays.hpp"
+#include "image.hpp"
 #include "shadows/support/squares.hpp"
 #include "support/catch.hpp"
 #include "support/device.hpp"
@@ -96,6 +97,38 @@ TEST_CASE("a frame is the same to the last bit each time") {
     shadows::Renderer other(device(), scene, settings);
     other.draw(scene);
     CHECK(same_bits(other.picture().download(), picture));
+}
+
+// An emitter that jumps from a wall to a ring changes them by more.
+TEST_CASE("rings that move change the unblocked light of still walls little by little") {
+    shadows::Scene scene = shadows::make_swarm(100'000);
+    shadows::Renderer renderer(device(), scene, small_settings(64, 48, 8));
+    std::vector<shadows::Surface> surfaces;
+    std::vector<cl_float4> a;
+    double most = 0;
+    std::size_t still = 0;
+    for (int frame = 0; frame < 12; ++frame) {
+        scene.move(scene, 0.02 * frame);
+        renderer.draw(scene);
+        const std::vector<shadows::Surface> surfaces_now = renderer.surfaces().download();
+        const std::vector<cl_float4> a_now = renderer.a().download();
+        for (std::size_t p = 0; p < a.size(); ++p) {
+            if (std::memcmp(&surfaces[p], &surfaces_now[p], sizeof(shadows::Surface)) != 0)
+                continue;
+            ++still;
+            for (int channel = 0; channel < 3; ++channel) {
+                const auto shown = [&](const cl_float4& light) {
+                    return support::srgb_from_linear(channel_of(surfaces[p].albedo, channel) *
+                                                     channel_of(light, channel) / pi);
+                };
+                most = std::max(most, std::abs(shown(a_now[p]) - shown(a[p])));
+            }
+        }
+        surfaces = surfaces_now;
+        a = a_now;
+    }
+    CHECK(still > 20'000);
+    CHECK(255 * most < 8);
 }
 
 TEST_CASE("a light anywhere gives a finite picture") {

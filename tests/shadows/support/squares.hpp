@@ -2,12 +2,15 @@
 
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <vector>
 
 #include "frame.hpp"
 #include "scene.hpp"
 
 namespace cellist::test {
+
+inline constexpr double pi = std::numbers::pi;
 
 /// A square across the z axis, in the plane z = `height`.
 inline support::Mesh square(double height, double half_side) {
