@@ -22,7 +22,7 @@ struct Settings {
     int width = 1024;
     int height = 768;
     int rsm = 512;       ///< texels of the reflective shadow map along each axis
-    int samples = 8;     ///< of them along each axis that send indirect light; divides `rsm`
+    int samples = 8;     ///< parts of it along each axis; divides `rsm`
     int reduce = 4;      ///< pixels of the picture for each one of buffer B, along each axis
     int interleave = 2;  ///< along each axis: neighbours in B share out the samples; divides these
     int grid = 0;        ///< cells along the longest side, or 0 for as many as suit
@@ -50,7 +50,7 @@ private:
 
 /// What a frame counted.
 struct FrameCounts {
-    std::uint64_t rays = 0;     ///< from pixels of B to samples that light them
+    std::uint64_t rays = 0;     ///< from pixels of B to emitters that light them
     std::uint64_t blocked = 0;  ///< of them
     cellist::BuildReport build;
 };

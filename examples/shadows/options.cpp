@@ -61,7 +61,7 @@ void add_quality_options(support::CommandLine& line, Settings& settings) {
     line.add_number("--rsm", settings.rsm, 1, RASTER_SIDE_MAX,
                     "texels of the reflective shadow map along each axis");
     line.add_number("--samples", settings.samples, 1, samples_max,
-                    "texels along each axis that light the scene; divides --rsm");
+                    "parts of the shadow map along each axis that light the scene; divides --rsm");
     line.add_number("--reduce", settings.reduce, 1, reduce_max,
                     "draw buffer B (blocked light) with 1/N of the width and height");
     line.add_number("--interleave", settings.interleave, 1, samples_max,

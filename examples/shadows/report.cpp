@@ -54,7 +54,7 @@ void print_accuracy(std::ostream& out, const Accuracy& accuracy) {
     difference("image", accuracy.picture);
     difference("buffer A", accuracy.a);
     difference("buffer B", accuracy.b);
-    line("") << "  (against double precision, with B at full resolution and from all samples)\n";
+    line("") << "  (against double precision, with B at full resolution and from all emitters)\n";
     line("too bright") << grouped(accuracy.leaks) << " of " << counted(accuracy.pixels, "pixel")
                        << " (" << percent(accuracy.leaks, accuracy.pixels) << ") by over 8 / 255\n";
     line("too dark") << grouped(accuracy.over_dark) << " of " << counted(accuracy.pixels, "pixel")

@@ -52,7 +52,7 @@ CELLIST_STRUCT(LightSource, position, axis, right, down, intensity, side, is_spo
 struct Gather {
     cl_int width, height;    ///< of the picture
     cl_int rsm_side;         ///< texels of the reflective shadow map along each axis
-    cl_int samples;          ///< of its texels along each axis
+    cl_int samples;          ///< parts of it along each axis
     cl_int reduce;           ///< pixels of the picture for each one of buffer B, along each axis
     cl_int interleave;       ///< along each axis: neighbours in B share out the samples
     cl_int first_row, rows;  ///< of B in this batch
