@@ -158,9 +158,15 @@ static inline void raster_piece(const View* view, const RasterPolygon* polygon, 
 //   counts           entries so far, from 0; those that a queue has no room for are counted as well
 //   ..._capacity     of the queues
 
-// Work-items that look for the blocks of a triangle together: on CPUs, where a block has one, each
-// is faster alone.
-#define RASTER_BIN_TEAM (RASTER_LANES == 1 ? 1u : 8u)
+// Work-items that look for the blocks of a triangle together. On CPUs, where a block has one
+// work-item, each is faster alone. On GPUs, the group shares out few triangles among large teams, as
+// each may cover much of the image.
+static inline uint raster_bin_team(uint triangles) {
+    if (RASTER_LANES == 1) return 1;
+    uint team = 8;
+    while (2 * team * max(triangles, 1u) <= get_local_size(0)) team *= 2;
+    return team;
+}
 
 // Nothing more is counted beyond this, so that the counters cannot wrap.
 #define RASTER_COUNT_MAX 0x80000000u
@@ -270,15 +276,15 @@ kernel void raster_bin(RASTER_BIN_QUEUES, RASTER_SCENE) {
     barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
 
     const uint count = listed_count;
-    const uint teams = get_local_size(0) / RASTER_BIN_TEAM;
-    const uint team = item / RASTER_BIN_TEAM, lane = item % RASTER_BIN_TEAM;
+    const uint team_size = raster_bin_team(count), teams = get_local_size(0) / team_size;
+    const uint team = item / team_size, lane = item % team_size;
     uint touched = 0, looked_at = 0, found = 0;  // a bit for each of the first 32 that it looks at
     for (uint n = team; n < count; n += teams) {
         const RasterTriangle one = n < RASTER_BATCH ? near[n] : triangles[listed[n]];
         const RasterBox box = raster_box(&one);
         int x = 0, y = 0;
         for (raster_step(&box, lane, &x, &y); y < box.down;
-             raster_step(&box, RASTER_BIN_TEAM, &x, &y), ++looked_at) {
+             raster_step(&box, team_size, &x, &y), ++looked_at) {
             if (!raster_touches(&one, &box, x, y)) continue;
             ++touched;
             if (looked_at < 32) found |= 1u << looked_at;
@@ -296,7 +302,7 @@ kernel void raster_bin(RASTER_BIN_QUEUES, RASTER_SCENE) {
         const RasterBox box = raster_box(&one);
         int x = 0, y = 0;
         for (raster_step(&box, lane, &x, &y); y < box.down;
-             raster_step(&box, RASTER_BIN_TEAM, &x, &y), ++looked_at) {
+             raster_step(&box, team_size, &x, &y), ++looked_at) {
             if (looked_at < 32 ? !(found >> looked_at & 1) : !raster_touches(&one, &box, x, y))
                 continue;
             const RasterBlock block = {listed[n], raster_block_place(&box, x, y)};
