@@ -10,8 +10,8 @@ class Exact : public ShadowMethod {
 public:
     explicit Exact(const Frame& f)
         : ranges_(f.device, {f.texels()},
-                  {.storage = f.settings.storage, .budget_bytes = f.settings.budget_bytes}),
-          pieces_(f.device, {f.texels()}, {.storage = f.settings.storage}),
+                  {.storage = f.storage(), .budget_bytes = f.settings.budget_bytes}),
+          pieces_(f.device, {f.texels()}, {.storage = f.storage()}),
           sweep_(f.device, kernels::sweep_exact_cl, ranges_),
           test_ranges_(f.device, kernels::test_exact_cl, ranges_),
           compress_(moving_kernel(f.device, kernels::compress_cl, "compress_ranges", pieces_,
@@ -54,13 +54,13 @@ public:
 private:
     void sort_and_compress(Frame& frame, std::size_t first, std::size_t texels,
                            support::PassTimes* times) {
+        if (!frame.settings.compress) return;
         // On a processor, a work-item sorts each of these lists faster.
         if (frame.device.info().one_thread_per_work_group)
             ranges_.sort_async(&VisibleRange::begin);
         else
             ranges_.sort(&VisibleRange::begin);
         if (times != nullptr) times->end("sort");
-        if (!frame.settings.compress) return;
         size_.pieces += pieces_
                             .build([&] {
                                 compress_.run(cellist::Range::padded(texels, 64), pieces_, ranges_,

@@ -50,6 +50,13 @@ std::size_t Frame::pixels() const {
     return static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height);
 }
 
+cellist::Storage Frame::storage() const {
+    // Processors test lists faster that are in one piece.
+    return settings.storage.value_or(device.info().one_thread_per_work_group
+                                         ? cellist::Storage::counted
+                                         : cellist::Storage::linked);
+}
+
 std::string with_receivers(std::string_view text) {
     return std::string(kernels::keys_clh) + std::string(kernels::receiver_clh) + std::string(text);
 }

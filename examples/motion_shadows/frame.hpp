@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -23,11 +24,12 @@ struct Settings {
     cl_uint samples = 20;     ///< of each pixel
     bool prepass = true;      ///< only texels that shadow tests will read
     cl_float bias = 1.0F;     ///< of shadow tests, in texels
-    bool compress = true;     ///< of Method::exact: merge ranges, and leave out hidden ones
+    bool compress = false;    ///< merge ranges, and leave out hidden ones
     cl_float tolerance = 0.25F;  ///< of the depth of merged ranges, in texels
     /// Of the lists of ranges, which are then built in slices.
     std::uint64_t budget_bytes = no_budget;
-    cellist::Storage storage = cellist::Storage::linked;
+    /// Of the lists; without it, what is fastest for them on the device.
+    std::optional<cellist::Storage> storage;
 };
 
 /// What the passes of a picture share.
@@ -35,6 +37,7 @@ struct Frame {
     Frame(const cellist::Device& device, const Scene& scene, const Settings& settings);
 
     [[nodiscard]] std::size_t pixels() const;
+    [[nodiscard]] cellist::Storage storage() const;
     [[nodiscard]] std::size_t texels() const { return farthest.size(); }
 
     const cellist::Device& device;

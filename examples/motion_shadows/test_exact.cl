@@ -7,8 +7,7 @@ static inline int is_blocked(TEST_TARGET, TEST_LIGHT, const Receiver r, float ti
     const float2 place = pixel_centre(light, (int)r.texel % light.width, (int)r.texel / light.width);
     cellist_for_each(ranges, r.texel, node) {
         const VisibleRange range = cellist_get(ranges, node);
-        if (range.begin > time) return 0;  // and all others, for they are sorted
-        if (range.end <= time || range.triangle == r.triangle) continue;
+        if (range.begin > time || range.end <= time || range.triangle == r.triangle) continue;
         MovingTriangle t;
         triangle_load(&t, lit, indices, range.triangle);
         const float depth = triangle_depth(&t, place, time);
