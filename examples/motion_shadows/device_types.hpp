@@ -38,6 +38,22 @@ struct VisibleRange {
 };
 CELLIST_STRUCT(VisibleRange, begin, end, triangle);
 
+/// The light's ray through the centre of a texel meets a facet of the prism that a moving triangle
+/// sweeps out, at this depth and time.
+struct PrismFragment {
+    cl_float depth, time;
+    cl_uint triangle;
+};
+CELLIST_STRUCT(PrismFragment, depth, time, triangle);
+
+/// Two fragments of a prism: the triangle covers the centre of a texel from `begin` to `end`.
+struct DepthTimeRange {
+    cl_float begin, end;
+    cl_float depth_begin, depth_end;
+    cl_uint triangle;
+};
+CELLIST_STRUCT(DepthTimeRange, begin, end, depth_begin, depth_end, triangle);
+
 /// The depth of one or more neighbouring triangles at the centre of a texel, linear in time.
 struct DepthPiece {
     cl_float begin, end;

@@ -13,6 +13,7 @@ namespace motion {
 struct ShadowMapSize {
     std::uint64_t fragments = 0;  ///< of prisms
     std::uint64_t ranges = 0;     ///< before compression
+    std::uint64_t unpaired = 0;   ///< fragments that make no range
     std::uint64_t pieces = 0;     ///< after it
     std::uint64_t bytes = 0;      ///< of device memory
     std::uint64_t slices = 0;     ///< of the last frame; 0 where it was built whole
@@ -37,6 +38,8 @@ public:
 };
 
 [[nodiscard]] std::unique_ptr<ShadowMethod> make_exact(const Frame& frame);
+/// The method of the paper.
+[[nodiscard]] std::unique_ptr<ShadowMethod> make_ranges(const Frame& frame);
 [[nodiscard]] std::unique_ptr<ShadowMethod> make_tsm(const Frame& frame);
 [[nodiscard]] std::unique_ptr<ShadowMethod> make_still(const Frame& frame);
 
