@@ -29,7 +29,7 @@ struct Settings {
     /// Of the lists of ranges, which are then built in slices.
     std::uint64_t budget_bytes = no_budget;
     /// Of the lists; without it, what is fastest for them on the device.
-    std::optional<cellist::Storage> storage;
+    std::optional<cellist::Storage> storage = {};
 };
 
 /// What the passes of a picture share.
