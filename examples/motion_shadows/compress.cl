@@ -1,11 +1,18 @@
 // Fewer ranges with the same shadows, but for a bounded error of depth: ranges that touch in time
 // and depth are merged where the depth stays linear, and what another range hides for all of its
 // time is left out.
+//
+// A stretch of a range whose depth deviates from its chord by at most LINEAR_PART of the tolerance
+// counts as linear. Ends of stretches stay within the rest of the tolerance, so all depths between
+// do, too.
 
 // Merged ranges that are still growing in a texel.
 #define OPEN_MAX 4
-// A range is divided into at most so many parts of linear depth.
-#define LINEAR_PARTS_MAX 16
+#define LINEAR_PART 0.125f
+// A stretch that is at most this part of a range counts as linear. Times at which the depth passes
+// the near plane are off by less than NEAR_LEAST.
+#define STRETCH_LEAST 0x1p-10f
+#define NEAR_LEAST 0x1p-16f
 
 // A range that grows: its depth is depth + slope * (t - begin), for any slope between the two.
 typedef struct {
@@ -24,25 +31,34 @@ static inline float open_depth(const OpenPiece* p, float time) {
     return fma(open_slope(p), time - p->begin, p->depth);
 }
 
-// Whether `front` is nearer than `p` for all of the time of `p`.
+// Whether `front` is nearer than `p` for all of the time of `p`, with any slope that it may get.
 static inline int open_hides(const OpenPiece* front, const OpenPiece* p) {
     return front->begin <= p->begin && front->end >= p->end &&
-           open_depth(front, p->begin) < open_depth(p, p->begin) &&
-           open_depth(front, p->end) < open_depth(p, p->end);
+           fma(front->most_slope, p->begin - front->begin, front->depth) <
+               open_depth(p, p->begin) &&
+           fma(front->most_slope, p->end - front->begin, front->depth) < open_depth(p, p->end);
 }
 
-// Lets a piece continue to `time`, if its depth stays within the tolerance of those there.
-static inline int open_extend(OpenPiece* p, float middle_time, float middle, float time,
-                              float depth, float tolerance) {
+// A stretch of time in which the depth of a triangle is nearly linear.
+typedef struct {
+    float begin, end;
+    float at_begin, at_end;  // the depth
+} Stretch;
+
+// Lets a piece continue with a stretch, if its depth stays within `allowed` of both ends.
+static inline int open_extend(OpenPiece* p, const Stretch s, float allowed) {
     float least = p->least_slope, most = p->most_slope;
-    const float to_middle = 1.0f / (middle_time - p->begin), to_end = 1.0f / (time - p->begin);
-    least = fmax(least, fmax((middle - tolerance - p->depth) * to_middle,
-                             (depth - tolerance - p->depth) * to_end));
-    most = fmin(most, fmin((middle + tolerance - p->depth) * to_middle,
-                           (depth + tolerance - p->depth) * to_end));
+    if (s.begin > p->begin) {
+        const float to_begin = 1.0f / (s.begin - p->begin);
+        least = fmax(least, (s.at_begin - allowed - p->depth) * to_begin);
+        most = fmin(most, (s.at_begin + allowed - p->depth) * to_begin);
+    }
+    const float to_end = 1.0f / (s.end - p->begin);
+    least = fmax(least, (s.at_end - allowed - p->depth) * to_end);
+    most = fmin(most, (s.at_end + allowed - p->depth) * to_end);
     if (!(least <= most)) return 0;
-    p->end = time;
-    p->last = depth;
+    p->end = s.end;
+    p->last = s.at_end;
     p->least_slope = least;
     p->most_slope = most;
     return 1;
@@ -60,26 +76,16 @@ static inline void close_piece(CELLIST_LISTS(DepthPiece, pieces), uint texel, Op
     cellist_insert(pieces, texel, piece);
 }
 
-// A stretch of time in which the depth of a triangle is nearly linear.
-typedef struct {
-    float begin, end;
-    float at_begin, at_middle, at_end;  // the depth
-} Stretch;
-
 static inline void add_stretch(CELLIST_LISTS(DepthPiece, pieces), uint texel, OpenPiece* open,
                                const Stretch s, float tolerance) {
-    const float middle = 0.5f * (s.begin + s.end);
+    const float allowed = (1.0f - LINEAR_PART) * tolerance;
 #pragma unroll
     for (int k = 0; k < OPEN_MAX; ++k)
         if (open[k].end == s.begin && fabs(open[k].last - s.at_begin) <= tolerance &&
-            open_extend(&open[k], middle, s.at_middle, s.end, s.at_end, tolerance))
+            open_extend(&open[k], s, allowed))
             return;
     OpenPiece fresh = {s.begin, s.begin, s.at_begin, s.at_begin, -INFINITY, INFINITY};
-    if (!open_extend(&fresh, middle, s.at_middle, s.end, s.at_end, tolerance)) {
-        fresh.end = s.end;
-        fresh.last = s.at_end;
-        fresh.least_slope = fresh.most_slope = (s.at_end - s.at_begin) / (s.end - s.begin);
-    }
+    open_extend(&fresh, s, allowed);
     // The one that ended first makes room; those that are closed have ended at -1.
     float first_end = open[0].end;
 #pragma unroll
@@ -114,26 +120,34 @@ kernel void compress_ranges(CELLIST_LISTS(DepthPiece, pieces), CELLIST_LISTS(Vis
                 close_piece(CELLIST_PASS(pieces), texel, open, k);
         MovingTriangle t;
         triangle_load(&t, lit, indices, range.triangle);
-        Stretch s = {range.begin, range.end, 0.0f, 0.0f, 0.0f};
-        s.at_begin = triangle_depth(&t, place, s.begin);
-        s.at_middle = triangle_depth(&t, place, 0.5f * (s.begin + s.end));
-        s.at_end = triangle_depth(&t, place, s.end);
-        if (!(fmin(s.at_begin, fmin(s.at_middle, s.at_end)) >= light.near_depth)) continue;
-        const float error = tolerance * (light.is_parallel ? light.pixel : light.pixel * s.at_middle);
-        // The deviation from a line falls with the square of the length.
-        const float bend = fabs(s.at_middle - 0.5f * (s.at_begin + s.at_end));
-        const int parts = (int)clamp(ceil(sqrt(2.0f * bend / error)), 1.0f, (float)LINEAR_PARTS_MAX);
-        for (int part = 1; part <= parts; ++part) {
-            if (parts > 1) {
-                s.end = part == parts ? range.end
-                                      : fma((float)part / (float)parts, range.end - range.begin,
-                                            range.begin);
-                s.at_middle = triangle_depth(&t, place, 0.5f * (s.begin + s.end));
-                s.at_end = triangle_depth(&t, place, s.end);
+        Stretch s = {range.begin, range.end, triangle_depth(&t, place, range.begin), 0.0f};
+        const float least = fmax(STRETCH_LEAST * (range.end - range.begin), NEAR_LEAST);
+        while (s.begin < range.end) {
+            const float third = (s.end - s.begin) / 3.0f;
+            const float at_first = triangle_depth(&t, place, s.begin + third);
+            const float at_second = triangle_depth(&t, place, s.end - third);
+            s.at_end = triangle_depth(&t, place, s.end);
+            const float nearest = fmin(fmin(s.at_begin, at_first), fmin(at_second, s.at_end));
+            const float farthest = fmax(fmax(s.at_begin, at_first), fmax(at_second, s.at_end));
+            const float error = tolerance * light.pixel *
+                                (light.is_parallel ? 1.0f : fmax(nearest, light.near_depth));
+            // A cubic may deviate by a third more between these places.
+            const float slope = (s.at_end - s.at_begin) / 3.0f;
+            const float bend = 1.34f * fmax(fabs(at_first - s.at_begin - slope),
+                                            fabs(s.at_end - at_second - slope));
+            const int is_seen = nearest >= light.near_depth;
+            const int is_hidden = farthest + 2.0f * bend < light.near_depth;
+            const float length = s.end - s.begin;
+            if ((is_seen && bend > LINEAR_PART * error && length > least) ||
+                (!is_seen && !is_hidden && length > NEAR_LEAST)) {
+                s.end = s.begin + 0.5f * length;
+                continue;
             }
-            if (s.end > s.begin) add_stretch(CELLIST_PASS(pieces), texel, open, s, error);
+            if (!is_hidden && at_first + at_second >= 2.0f * light.near_depth)
+                add_stretch(CELLIST_PASS(pieces), texel, open, s, error);
             s.begin = s.end;
             s.at_begin = s.at_end;
+            s.end = fmin(range.end, s.begin + 2.0f * length);
         }
     }
 #pragma unroll
