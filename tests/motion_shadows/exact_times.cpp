@@ -41,8 +41,7 @@ TEST_CASE("a receiver is in shadow for as long as double precision says") {
     CELLIST_RANDOM(random, 1);
     std::vector<motion::Scene> scenes{motion::make_cubes(), motion::make_fan(),
                                       motion::make_blinds(), motion::make_walker(20'000)};
-    for (const bool is_spot : {true, false})
-        scenes.push_back(random_scene(random, 2000, is_spot));
+    for (const bool is_spot : {true, false}) scenes.push_back(random_scene(random, 2000, is_spot));
     scenes.push_back(motion::make_cubes());
     scenes.back().light.is_spot = false;
     scenes.back().light.side = 4;
@@ -71,7 +70,9 @@ TEST_CASE("a receiver is in shadow for as long as double precision says") {
             const double t = between(random, 0, 1);
             glm::dvec4 seen(0);
             for (std::size_t k = 0; k < 3; ++k)
-                seen += (k == 0 ? u : k == 1 ? v : 1 - u - v) *
+                seen += (k == 0   ? u
+                         : k == 1 ? v
+                                  : 1 - u - v) *
                         glm::mix(chosen.vertex[k].begin, chosen.vertex[k].end, t);
             const glm::dvec2 texel_place = glm::dvec2(seen) / seen.z + 0.5 * side;
             if (!(texel_place.x >= 0 && texel_place.y >= 0 && texel_place.x < side &&
@@ -101,8 +102,8 @@ TEST_CASE("a receiver is in shadow for as long as double precision says") {
                 const auto occluded = [&](const std::vector<Blocker>& blockers) {
                     Times times;
                     for (const Blocker& b : blockers) {
-                        const Times part = nearer_times(b.triangle, place, b.times,
-                                                        view.near_depth, limit);
+                        const Times part =
+                            nearer_times(b.triangle, place, b.times, view.near_depth, limit);
                         times.insert(times.end(), part.begin(), part.end());
                     }
                     return total(std::move(times));

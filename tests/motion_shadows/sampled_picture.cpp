@@ -37,8 +37,7 @@ float unit_float(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x
 
 float sample_time(std::uint32_t pixel, std::uint32_t sample, std::uint32_t samples) {
     const float u = unit_float(hash32(hash32(pixel * 2) + sample));
-    return std::min((static_cast<float>(sample) + u) / static_cast<float>(samples),
-                    0x1.fffffep-1F);
+    return std::min((static_cast<float>(sample) + u) / static_cast<float>(samples), 0x1.fffffep-1F);
 }
 
 glm::vec2 sample_offset(std::uint32_t pixel, std::uint32_t sample) {
@@ -72,7 +71,7 @@ struct HostView {
 
 // What the host says of a shadow test.
 struct HostReceiver {
-    bool is_certain = false;  ///< no decision is within rounding
+    bool is_certain = false;      ///< no decision is within rounding
     bool is_lit_at_most = false;  ///< faces away from the light, or is out of its image
     std::size_t texel = 0;
     double limit = 0, rounding = 0, pixel = 0;
@@ -125,8 +124,8 @@ public:
             v[k] = glm::mix(from_camera.vertex[k].begin, from_camera.vertex[k].end, time);
             lit[k] = glm::mix(from_light.vertex[k].begin, from_light.vertex[k].end, time);
             const auto vertex = scene.triangles[seen][int(k)];
-            position[k] = glm::mix(glm::dvec3(scene.begin[vertex]),
-                                   glm::dvec3(scene.end[vertex]), time);
+            position[k] =
+                glm::mix(glm::dvec3(scene.begin[vertex]), glm::dvec3(scene.end[vertex]), time);
         }
         for (std::size_t k = 0; k < 3; ++k) {
             const glm::dvec4 &a = v[(k + 1) % 3], &b = v[(k + 2) % 3];
@@ -134,14 +133,13 @@ public:
                               (a.y - place.y * a.z) * (b.x - place.x * b.z);
         }
         weights /= weights.x + weights.y + weights.z;
-        const glm::dvec3 at = weights.x * position[0] + weights.y * position[1] +
-                              weights.z * position[2];
+        const glm::dvec3 at =
+            weights.x * position[0] + weights.y * position[1] + weights.z * position[2];
         glm::dvec3 normal =
             glm::normalize(glm::cross(position[1] - position[0], position[2] - position[0]));
         if (glm::dot(normal, at - scene.eye) > 0) normal = -normal;
-        const glm::dvec3 to_light =
-            scene.light.is_spot ? scene.light.position - at
-                                : scene.light.position - scene.light.target;
+        const glm::dvec3 to_light = scene.light.is_spot ? scene.light.position - at
+                                                        : scene.light.position - scene.light.target;
         const double facing = glm::dot(normal, glm::normalize(to_light));
         const double facing_camera = glm::dot(normal, glm::normalize(scene.eye - at));
         if (std::abs(facing) < 1e-4 || facing_camera < 1e-3) return r;
@@ -163,8 +161,7 @@ public:
         r.texel = static_cast<std::size_t>(image.y) * static_cast<std::size_t>(light.view.width) +
                   static_cast<std::size_t>(image.x);
         r.pixel = double(light.view.pixel) * (light.view.is_parallel != 0 ? 1 : seen_at.w);
-        const RoundedDepth plane =
-            depth_at(from_light, centre_of(light.view, r.texel), time);
+        const RoundedDepth plane = depth_at(from_light, centre_of(light.view, r.texel), time);
         const double most = 64 * r.pixel;
         const double slope = plane.depth - seen_at.w;
         r.limit = seen_at.w - bias * r.pixel + std::clamp(slope, -most, most);
@@ -195,9 +192,8 @@ public:
             if (d.depth < near_depth - rounding) continue;
             b.possibly = b.possibly || d.depth < r.limit + rounding;
             if (i == seen) continue;
-            b.certainly = b.certainly ||
-                          (inside > place_rounding && d.depth < r.limit - rounding &&
-                           d.depth > near_depth + rounding);
+            b.certainly = b.certainly || (inside > place_rounding && d.depth < r.limit - rounding &&
+                                          d.depth > near_depth + rounding);
             b.guess = b.guess || (inside >= 0 && d.depth >= near_depth && d.depth < r.limit);
         }
         return b;
@@ -232,8 +228,7 @@ TEST_CASE("samples see what double precision sees, and their shadows are the sam
             for (std::size_t i = 0; i < tries; ++i) {
                 const std::uint32_t pixel = below(random, std::uint32_t(frame.pixels()));
                 const std::uint32_t sample = below(random, settings.samples);
-                const motion::Receiver device_says =
-                    receivers[sample * frame.pixels() + pixel];
+                const motion::Receiver device_says = receivers[sample * frame.pixels() + pixel];
                 const auto time = double(sample_time(pixel, sample, settings.samples));
                 const glm::dvec2 place(glm::vec2(centre_of(frame.camera.view, pixel)) +
                                        sample_offset(pixel, sample));

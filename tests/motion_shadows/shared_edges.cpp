@@ -73,9 +73,8 @@ struct Pair {
 class EdgeTimes {
 public:
     EdgeTimes()
-        : kernel_(motion::moving_kernel(device(),
-                                        std::string(motion::kernels::exact_clh) + kernel_text,
-                                        "find_times")) {}
+        : kernel_(motion::moving_kernel(
+              device(), std::string(motion::kernels::exact_clh) + kernel_text, "find_times")) {}
 
     // 12 numbers for each of the two triangles of each pair.
     std::vector<cl_float> of(const std::vector<Pair>& pairs, std::mt19937& random) {
@@ -84,8 +83,8 @@ public:
         std::vector<cl_float2> places;
         for (const Pair& pair : pairs) {
             const auto first = static_cast<cl_uint>(vertices.size());
-            vertices.insert(vertices.end(), {pair.edge[0], pair.edge[1], pair.apex[0],
-                                             pair.edge[1], pair.edge[0], pair.apex[1]});
+            vertices.insert(vertices.end(), {pair.edge[0], pair.edge[1], pair.apex[0], pair.edge[1],
+                                             pair.edge[0], pair.apex[1]});
             // The second triangle has copies of the vertices, or the same ones.
             const bool has_copies = random() % 2 == 0;
             const std::array<std::array<cl_uint, 3>, 2> corners{
@@ -101,9 +100,8 @@ public:
         }
         const auto count = static_cast<cl_uint>(apexes.size());
         Buffer<cl_float> times(device(), times_of_a_triangle * count);
-        kernel_.run(Range::padded(count, 64), Buffer(device(), vertices),
-                    Buffer(device(), indices), Buffer(device(), apexes), Buffer(device(), places),
-                    count, times);
+        kernel_.run(Range::padded(count, 64), Buffer(device(), vertices), Buffer(device(), indices),
+                    Buffer(device(), apexes), Buffer(device(), places), count, times);
         return times.download();
     }
 
@@ -190,7 +188,8 @@ Pair random_pair(std::mt19937& random, bool is_parallel) {
             return place_of(pair) + sign * between(random, 100, 300) * across +
                    between(random, -10, 10) * along;
         };
-        pair.apex[std::size_t(k)] = vertex(apex(), apex(), is_parallel ? 1 : 3, is_parallel ? 1 : 2);
+        pair.apex[std::size_t(k)] =
+            vertex(apex(), apex(), is_parallel ? 1 : 3, is_parallel ? 1 : 2);
     }
     return pair;
 }

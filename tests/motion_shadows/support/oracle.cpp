@@ -81,9 +81,7 @@ Line line(double begin, double end) { return {begin, end - begin}; }
 }  // namespace
 
 std::vector<DoubleVertex> exactly(std::span<const motion::MovingVertex> vertices) {
-    const auto wide = [](const cl_float4& v) {
-        return glm::dvec4(v.s[0], v.s[1], v.s[2], v.s[3]);
-    };
+    const auto wide = [](const cl_float4& v) { return glm::dvec4(v.s[0], v.s[1], v.s[2], v.s[3]); };
     std::vector<DoubleVertex> exact;
     exact.reserve(vertices.size());
     for (const motion::MovingVertex& v : vertices) exact.push_back({wide(v.begin), wide(v.end)});
@@ -149,8 +147,8 @@ Times nearer_times(const DoubleTriangle& triangle, const glm::dvec2& place, cons
     for (std::size_t k = 0; k < 3; ++k) {
         const Polynomial edge = edge_function(triangle, place, k);
         weight = sum(weight, edge);
-        numerator = sum(numerator, product(edge, line(triangle.vertex[k].begin.w,
-                                                      triangle.vertex[k].end.w)));
+        numerator = sum(numerator,
+                        product(edge, line(triangle.vertex[k].begin.w, triangle.vertex[k].end.w)));
     }
     const Polynomial over_limit = sum(numerator, weight, -limit);
     const Polynomial over_nearest = sum(numerator, weight, -nearest);
