@@ -34,12 +34,7 @@ kernel void find_times(global const MovingVertex* vertices, global const uint* i
     VisibleTimes visible;
     for (int k = 0; k < 12; ++k) out[k] = -1.0f;
     const int is_visible = visible_begin(&visible, &t, places[i / 2]);
-    float2 begin[3], end[3];
-    for (int k = 0; k < 3; ++k) {
-        begin[k] = relative_to(t.begin[k], places[i / 2]);
-        end[k] = relative_to(t.end[k], places[i / 2]);
-    }
-    const EdgeTimes edge = triangle_edge_times(&t, begin, end, apexes[i]);
+    const EdgeTimes edge = triangle_edge_times(&t, places[i / 2], apexes[i]);
     out[0] = edge.first;
     out[1] = edge.second;
     out[2] = (float)edge.positive;

@@ -15,7 +15,7 @@ class RangeMap {
 public:
     RangeMap(const Device& device, const motion::Scene& scene, int side)
         : buffers_(device, scene),
-          seen_(device, motion::light_view(scene.light, side), buffers_.vertex_count),
+          seen_(device, scene, motion::light_view(scene.light, side)),
           farthest_(device, static_cast<std::size_t>(side) * static_cast<std::size_t>(side)),
           ranges_(device, {farthest_.size()}, {}),
           pieces_(device, {farthest_.size()}, {}),
