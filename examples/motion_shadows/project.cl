@@ -1,10 +1,11 @@
-// One work-item a vertex: what a view sees of its way. What is infinite, NaN or farther than 2^30
-// pixels from the axis becomes NaN.
+// One work-item a vertex: what a view sees of its way. What is infinite, NaN, or so far away that
+// squares of edge functions would leave the range of floats, becomes NaN.
 static float4 project_position(const View view, float3 position) {
     const float4 p = (float4)(position, 1.0f);
     const float4 v = (float4)(dot(view.row_x, p), dot(view.row_y, p), dot(view.row_w, p),
                               dot(view.row_depth, p));
-    return all(fabs(v) < 0x1p30f) ? v : (float4)(NAN);
+    const float pixels = (float)max(view.width, view.height);
+    return all(fabs(v) < 0x1p30f) && fabs(v.z) * pixels < 0x1p30f ? v : (float4)(NAN);
 }
 
 kernel void project_vertices(const View view, global const float* begin, global const float* end,

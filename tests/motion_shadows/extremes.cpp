@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iostream>
 #include <limits>
 #include <memory>
 #include <random>
@@ -55,6 +56,7 @@ double largest_error(const motion::Scene& scene, int side = 64) {
             device_says[r.triangle].clear();
         }
     }
+    std::cout << "largest error " << largest << '\n';
     return largest;
 }
 
