@@ -13,6 +13,7 @@
 #include "files.hpp"
 #include "frame/frame.hpp"
 #include "image.hpp"
+#include "image_difference.hpp"
 #include "json_report.hpp"
 #include "methods/renderer.hpp"
 #include "options.hpp"
@@ -105,11 +106,7 @@ void write_reference(const oit::Options& options, const oit::Frame& frame,
         support::write_image(options.write_reference, wanted, width, height);
     const std::filesystem::path& path = options.write_difference;
     if (path.empty()) return;
-    const std::vector<cl_float4> drawn = oit::side_by_side(image, frame);
-    if (support::has_floats(support::image_format(path)))
-        support::write_image(path, oit::linear_difference(drawn, wanted), width, height);
-    else
-        support::write_bytes_as_image(path, oit::shown_difference(drawn, wanted), width, height);
+    support::write_difference(path, oit::side_by_side(image, frame), wanted, width, height);
 }
 
 // With all layers; and with as many as were asked for, which tells what the device makes of these.

@@ -52,24 +52,6 @@ void read_reduce(const std::string& text, Options& options) {
         throw support::InputError("--reduce draws one sample per pixel: leave out --samples");
 }
 
-// A number of bytes, or of a unit of them.
-void read_memory(const std::string& text, Options& options) {
-    constexpr std::pair<std::string_view, int> units[] = {
-        {"KiB", 10}, {"MiB", 20}, {"GiB", 30}, {"", 0}};
-    for (const auto& [unit, shift] : units) {
-        if (!std::string_view(text).ends_with(unit)) continue;
-        const char* const number_end = text.data() + text.size() - unit.size();
-        std::uint64_t number = 0;
-        const auto [end, error] = std::from_chars(text.data(), number_end, number);
-        if (error != std::errc() || end != number_end || number == 0 ||
-            number > ~std::uint64_t{0} >> shift)
-            break;
-        options.memory_bytes = number << shift;
-        return;
-    }
-    refuse("--memory", text, "a whole number of bytes, KiB, MiB or GiB, such as 64MiB");
-}
-
 void check_outputs(const Options& options) {
     const std::filesystem::path first = options.out.of(1);
     const support::NamedFile outputs[] = {{"--out", first},
@@ -151,7 +133,8 @@ void add_quality_options(support::CommandLine& line, Options& options) {
              [&](Text text) { read_reduce(text, options); });
     line.add("--memory", "",
              "limit on the device memory of the method, such as 64MiB; lists are drawn in slices",
-             "BYTES", [&](Text text) { read_memory(text, options); });
+             "BYTES",
+             [&](Text text) { options.memory_bytes = support::read_bytes("--memory", text); });
 }
 
 void add_budget_options(support::CommandLine& line, Options& options, bool& strict) {

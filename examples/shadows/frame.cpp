@@ -192,18 +192,6 @@ void check_settings(const Settings& s) {
     must_divide(s.interleave, "--interleave", s.samples, "--samples");
 }
 
-void PassTimes::end(const std::string& pass) {
-    device_.finish();
-    const double ms = watch_.ms();
-    const auto known = std::find_if(times_.begin(), times_.end(),
-                                    [&](const auto& entry) { return entry.first == pass; });
-    if (known == times_.end())
-        times_.emplace_back(pass, ms);
-    else
-        known->second += ms;
-    watch_ = {};
-}
-
 SurfaceView::SurfaceView(const cellist::Device& device, raster::SetupKernels& setup,
                          const raster::Geometry& geometry,
                          const std::vector<raster::Placed>& placed, const raster::View& view)
@@ -300,7 +288,7 @@ Renderer::Renderer(const cellist::Device& device, const Scene& scene, const Sett
       gather_blocked_(kernel("gather_blocked")),
       compose_(kernel("compose")) {}
 
-void Renderer::draw(const Scene& scene, PassTimes* times, const TakeRays& take_rays) {
+void Renderer::draw(const Scene& scene, support::PassTimes* times, const TakeRays& take_rays) {
     const auto end = [&](const char* pass) {
         if (times) times->end(pass);
     };
@@ -337,7 +325,7 @@ void Renderer::draw(const Scene& scene, PassTimes* times, const TakeRays& take_r
 }
 
 // Traces the rays of B in batches of rows.
-void Renderer::gather_blocked(PassTimes* times, const TakeRays& take_rays) {
+void Renderer::gather_blocked(support::PassTimes* times, const TakeRays& take_rays) {
     ray_counts_.fill(0);
     Gather batch = gather_;
     for (int row = 0; row < b_height(); row += batch.rows) {

@@ -11,9 +11,9 @@
 
 #include "grid/rays.hpp"
 #include "grid/triangle_grid.hpp"
+#include "pass_times.hpp"
 #include "raster/rasteriser.hpp"
 #include "scene.hpp"
-#include "stopwatch.hpp"
 #include "surfaces.hpp"
 
 namespace shadows {
@@ -32,21 +32,6 @@ struct Settings {
 
 /// Throws InputError unless --interleave divides --samples, and these divide --rsm.
 void check_settings(const Settings& settings);
-
-/// Milliseconds of each pass, in the order of their first run. Waits after every pass, so that
-/// passes do not overlap: their sum exceeds the time of a frame.
-class PassTimes {
-public:
-    explicit PassTimes(const cellist::Device& device) : device_(device) {}
-    /// The pass that ends here.
-    void end(const std::string& pass);
-    [[nodiscard]] const std::vector<std::pair<std::string, double>>& all() const { return times_; }
-
-private:
-    const cellist::Device& device_;
-    support::Stopwatch watch_;
-    std::vector<std::pair<std::string, double>> times_;
-};
 
 /// What a frame counted.
 struct FrameCounts {
@@ -89,7 +74,8 @@ public:
                            const cellist::Buffer<cl_uint>& blocked)>;
 
     /// Draws the scene as Scene::move has left it. Blocks while the grid is built.
-    void draw(const Scene& scene, PassTimes* times = nullptr, const TakeRays& take_rays = {});
+    void draw(const Scene& scene, support::PassTimes* times = nullptr,
+              const TakeRays& take_rays = {});
 
     /// What the last frame counted. Blocks.
     [[nodiscard]] FrameCounts counts() const;
@@ -124,7 +110,7 @@ public:
 private:
     template <class... Uses>
     [[nodiscard]] cellist::Kernel kernel(const char* name, const Uses&... uses) const;
-    void gather_blocked(PassTimes* times, const TakeRays& take_rays);
+    void gather_blocked(support::PassTimes* times, const TakeRays& take_rays);
 
     const cellist::Device& device_;
     Gather gather_;

@@ -39,26 +39,6 @@ std::vector<double> draw_frames(const cellist::Device& device, const Options& op
     return frames_ms;
 }
 
-// The median of some frames that wait after every pass.
-std::vector<std::pair<std::string, double>> pass_times(const cellist::Device& device,
-                                                       const Options& options,
-                                                       const shadows::Scene& scene,
-                                                       Renderer& renderer) {
-    std::vector<std::vector<std::pair<std::string, double>>> frames;
-    for (std::uint32_t frame = 0; frame < std::min(options.frames, 5U); ++frame) {
-        shadows::PassTimes times(device);
-        renderer.draw(scene, &times);
-        frames.push_back(times.all());
-    }
-    std::vector<std::pair<std::string, double>> result = frames.front();
-    for (std::size_t pass = 0; pass < result.size(); ++pass) {
-        std::vector<double> ms;
-        for (const auto& frame : frames) ms.push_back(frame[pass].second);
-        result[pass].second = support::median(ms);
-    }
-    return result;
-}
-
 void write_pictures(const Options& options, const shadows::Scene& scene, Renderer& renderer,
                     FrameReport& report) {
     const int width = options.settings.width, height = options.settings.height;
@@ -99,7 +79,9 @@ bool run(const Options& options) {
     report.device = device.info().name;
     report.driver = device.info().driver;
     report.frames_ms = draw_frames(device, options, scene, renderer);
-    report.passes_ms = pass_times(device, options, scene, renderer);
+    report.passes_ms =
+        support::median_passes(device, std::min(options.frames, 5U),
+                               [&](support::PassTimes& times) { renderer.draw(scene, &times); });
     if (options.reference) report.accuracy = compare_with_reference(renderer, scene);
     report.counts = renderer.counts();
     report.lengths = renderer.grid().entries().lengths();

@@ -102,6 +102,11 @@ void CommandLine::add_storage(cellist::Storage& storage) {
         [&](const std::string& text) { storage = read_storage(text); });
 }
 
+void CommandLine::add_storage(std::optional<cellist::Storage>& storage) {
+    add("--storage", "", "storage of the lists; the default is the fastest on the device",
+        "linked|counted|fixed", [&](const std::string& text) { storage = read_storage(text); });
+}
+
 void CommandLine::add_seed(std::uint32_t& seed) {
     add_number("--seed", seed, 0, 0xFFFFFFFF, "seed of the random numbers");
 }
@@ -168,6 +173,18 @@ double read_between(const std::string& option, const std::string& text, double l
     const auto number = parsed<double>(text);
     if (!number || !(*number >= least && *number <= most)) refuse(option, text, expected);
     return *number;
+}
+
+std::uint64_t read_bytes(const std::string& option, const std::string& text) {
+    constexpr std::pair<std::string_view, int> units[] = {
+        {"KiB", 10}, {"MiB", 20}, {"GiB", 30}, {"", 0}};
+    for (const auto& [unit, shift] : units) {
+        if (!std::string_view(text).ends_with(unit)) continue;
+        const auto number = parsed<std::uint64_t>(text.substr(0, text.size() - unit.size()));
+        if (!number || *number == 0 || *number > ~std::uint64_t{0} >> shift) break;
+        return *number << shift;
+    }
+    refuse(option, text, "a whole number of bytes, KiB, MiB or GiB, such as 64MiB");
 }
 
 void print_error(const std::string& name, const std::string& message) {

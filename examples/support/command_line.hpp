@@ -26,6 +26,10 @@ namespace support {
 [[nodiscard]] double read_between(const std::string& option, const std::string& text, double least,
                                   double most, const std::string& expected);
 
+/// The text of an option as a number of bytes, such as 67108864 or 64MiB. Throws InputError unless
+/// it is at least 1.
+[[nodiscard]] std::uint64_t read_bytes(const std::string& option, const std::string& text);
+
 /// Throws InputError: the option has none of the values it could have, such as "open or periodic".
 [[noreturn]] void refuse(const std::string& option, const std::string& text,
                          const std::string& expected);
@@ -77,6 +81,8 @@ public:
                   const std::string& what, const std::string& type);
     /// --storage linked|counted|fixed
     void add_storage(cellist::Storage& storage);
+    /// The same, where the program chooses if the option is not given.
+    void add_storage(std::optional<cellist::Storage>& storage);
     /// --seed N
     void add_seed(std::uint32_t& seed);
     /// --device D

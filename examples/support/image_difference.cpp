@@ -40,4 +40,34 @@ ImageDifference difference(std::span<const cl_float4> image, std::span<const glm
     return result;
 }
 
+std::vector<cl_float4> linear_difference(std::span<const cl_float4> a,
+                                         std::span<const cl_float4> b) {
+    std::vector<cl_float4> result(a.size());
+    for (std::size_t p = 0; p < a.size(); ++p)
+        for (int c = 0; c < 3; ++c) result[p].s[c] = std::abs(a[p].s[c] - b[p].s[c]);
+    return result;
+}
+
+std::vector<std::uint8_t> shown_difference(std::span<const cl_float4> a,
+                                           std::span<const cl_float4> b) {
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(3 * a.size());
+    for (std::size_t p = 0; p < a.size(); ++p)
+        for (int c = 0; c < 3; ++c) {
+            const double error = std::abs(srgb_from_linear(static_cast<double>(a[p].s[c])) -
+                                          srgb_from_linear(static_cast<double>(b[p].s[c])));
+            bytes.push_back(static_cast<std::uint8_t>(
+                std::lround(255 * std::min(1.0, difference_factor * error))));
+        }
+    return bytes;
+}
+
+void write_difference(const std::filesystem::path& path, std::span<const cl_float4> a,
+                      std::span<const cl_float4> b, int width, int height) {
+    if (has_floats(image_format(path)))
+        write_image(path, linear_difference(a, b), width, height);
+    else
+        write_bytes_as_image(path, shown_difference(a, b), width, height);
+}
+
 }  // namespace support

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <span>
 #include <vector>
 
@@ -23,5 +25,20 @@ struct ImageDifference {
 [[nodiscard]] ImageDifference difference(std::span<const cl_float4> image,
                                          std::span<const glm::dvec3> reference, std::size_t width,
                                          std::size_t height);
+
+/// The factor by which differences are enlarged in 8-bit pictures.
+inline constexpr int difference_factor = 16;
+
+/// The difference of two pictures, channel by channel, of linear colours.
+[[nodiscard]] std::vector<cl_float4> linear_difference(std::span<const cl_float4> a,
+                                                       std::span<const cl_float4> b);
+/// The same for sRGB-encoded colours, times difference_factor, in bytes.
+[[nodiscard]] std::vector<std::uint8_t> shown_difference(std::span<const cl_float4> a,
+                                                         std::span<const cl_float4> b);
+
+/// Writes linear_difference() in a format of floats, and else shown_difference(). Throws as
+/// write_file() does.
+void write_difference(const std::filesystem::path& path, std::span<const cl_float4> a,
+                      std::span<const cl_float4> b, int width, int height);
 
 }  // namespace support

@@ -22,6 +22,18 @@ std::string now() {
     return text.data();
 }
 
+std::string quoted(const std::string& text) {
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string field = "\"";
+    for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return field + '"';
+}
+
+std::string field_of(const ordered_json& value) {
+    if (value.is_null()) return {};
+    return quoted(value.is_string() ? value.get<std::string>() : value.dump());
+}
+
 }  // namespace
 
 ordered_json report_head(int schema, std::string_view program,
@@ -43,6 +55,21 @@ ordered_json file_or_null(const std::filesystem::path& path) {
 
 std::string dump(const ordered_json& json, int indent) {
     return json.dump(indent, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+std::string csv(std::span<const char* const> names, const ordered_json& objects) {
+    std::string text;
+    for (const char* name : names) text += std::string(text.empty() ? "" : ",") + name;
+    text += '\n';
+    for (const ordered_json& object : objects) {
+        std::string line;
+        for (const char* name : names) {
+            if (name != names[0]) line += ',';
+            if (object.contains(name)) line += field_of(object[name]);
+        }
+        text += line + '\n';
+    }
+    return text;
 }
 
 }  // namespace support

@@ -22,4 +22,9 @@ namespace support {
 /// The text of a JSON value; replaces bytes that are not UTF-8.
 [[nodiscard]] std::string dump(const nlohmann::ordered_json& json, int indent);
 
+/// A CSV file (RFC 4180) with a line for each of some objects. Its columns are members of these
+/// names; what is null or missing is empty.
+[[nodiscard]] std::string csv(std::span<const char* const> names,
+                              const nlohmann::ordered_json& objects);
+
 }  // namespace support

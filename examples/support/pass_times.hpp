@@ -1,6 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,5 +38,23 @@ private:
     Stopwatch watch_;
     std::vector<std::pair<std::string, double>> times_;
 };
+
+/// The median times of the passes of some frames, at least one, which `draw` draws.
+[[nodiscard]] inline std::vector<std::pair<std::string, double>> median_passes(
+    const cellist::Device& device, std::uint32_t frames, std::invocable<PassTimes&> auto&& draw) {
+    std::vector<std::vector<std::pair<std::string, double>>> drawn;
+    for (std::uint32_t frame = 0; frame < frames; ++frame) {
+        PassTimes times(device);
+        draw(times);
+        drawn.push_back(times.all());
+    }
+    std::vector<std::pair<std::string, double>> result = drawn.front();
+    for (std::size_t pass = 0; pass < result.size(); ++pass) {
+        std::vector<double> ms;
+        for (const auto& frame : drawn) ms.push_back(frame[pass].second);
+        result[pass].second = median(ms);
+    }
+    return result;
+}
 
 }  // namespace support

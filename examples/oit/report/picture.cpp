@@ -1,10 +1,6 @@
 #include "report/picture.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
-
-#include "image.hpp"
 
 namespace oit {
 
@@ -29,29 +25,6 @@ std::vector<cl_float4> linear_image(const Reference& reference) {
         image.push_back({{static_cast<float>(colour.x), static_cast<float>(colour.y),
                           static_cast<float>(colour.z), 1.0F}});
     return image;
-}
-
-std::vector<cl_float4> linear_difference(std::span<const cl_float4> a,
-                                         std::span<const cl_float4> b) {
-    std::vector<cl_float4> result(a.size());
-    for (std::size_t p = 0; p < a.size(); ++p)
-        for (int c = 0; c < 3; ++c) result[p].s[c] = std::abs(a[p].s[c] - b[p].s[c]);
-    return result;
-}
-
-std::vector<std::uint8_t> shown_difference(std::span<const cl_float4> a,
-                                           std::span<const cl_float4> b) {
-    std::vector<std::uint8_t> bytes;
-    bytes.reserve(3 * a.size());
-    for (std::size_t p = 0; p < a.size(); ++p)
-        for (int c = 0; c < 3; ++c) {
-            const double error =
-                std::abs(support::srgb_from_linear(static_cast<double>(a[p].s[c])) -
-                         support::srgb_from_linear(static_cast<double>(b[p].s[c])));
-            bytes.push_back(static_cast<std::uint8_t>(
-                std::lround(255 * std::min(1.0, difference_factor * error))));
-        }
-    return bytes;
 }
 
 int picture_width(const Frame& frame) {

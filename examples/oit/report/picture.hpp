@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <span>
 #include <vector>
 
 #include <cellist/opencl.hpp>
@@ -20,15 +18,5 @@ namespace oit {
 
 /// The reference's image in floats, eye by eye.
 [[nodiscard]] std::vector<cl_float4> linear_image(const Reference& reference);
-
-/// The factor by which differences are enlarged in 8-bit pictures.
-inline constexpr int difference_factor = 16;
-
-/// The difference of two pictures, channel by channel, of linear colours.
-[[nodiscard]] std::vector<cl_float4> linear_difference(std::span<const cl_float4> a,
-                                                       std::span<const cl_float4> b);
-/// The same for sRGB-encoded colours, times difference_factor, in bytes.
-[[nodiscard]] std::vector<std::uint8_t> shown_difference(std::span<const cl_float4> a,
-                                                         std::span<const cl_float4> b);
 
 }  // namespace oit

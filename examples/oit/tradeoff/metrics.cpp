@@ -95,19 +95,6 @@ ordered_json to_json(const Measurement& m, bool on_front) {
     return json;
 }
 
-// A field of a CSV file (RFC 4180).
-std::string quoted(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-    std::string field = "\"";
-    for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return field + '"';
-}
-
-std::string field_of(const ordered_json& value) {
-    if (value.is_null()) return {};
-    return quoted(value.is_string() ? value.get<std::string>() : value.dump());
-}
-
 }  // namespace
 
 void print(const Sweep& sweep, std::ostream& out) {
@@ -189,19 +176,7 @@ std::string to_csv(const Sweep& sweep) {
                                      "pixels_over_1_255",
                                      "pareto",
                                      "failure"};
-    std::string csv;
-    for (const char* name : names) csv += std::string(csv.empty() ? "" : ",") + name;
-    csv += '\n';
-    const ordered_json metrics = to_json(sweep);
-    for (const ordered_json& setting : metrics["settings"]) {
-        std::string line;
-        for (const char* name : names) {
-            if (name != names[0]) line += ',';
-            if (setting.contains(name)) line += field_of(setting[name]);
-        }
-        csv += line + '\n';
-    }
-    return csv;
+    return support::csv(names, to_json(sweep)["settings"]);
 }
 
 }  // namespace oit

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "image.hpp"
+#include "image_difference.hpp"
 #include "input_error.hpp"
 #include "oit/support/program.hpp"
 #include "picture_name.hpp"
@@ -145,13 +146,13 @@ TEST_CASE("a number in a name counts the frames") {
 
 TEST_CASE("differences are shown sixteen times as large, and kept in floats as they are") {
     const std::vector<cl_float4> a{{{0, 1, 0.25F, 1}}}, b{{{0, 0.5F, 0.25F, 1}}};
-    CHECK(oit::shown_difference(a, b) == std::vector<std::uint8_t>{0, 255, 0});
-    const cl_float4 difference = oit::linear_difference(a, b).front();
+    CHECK(support::shown_difference(a, b) == std::vector<std::uint8_t>{0, 255, 0});
+    const cl_float4 difference = support::linear_difference(a, b).front();
     CHECK(difference.s[0] == 0);
     CHECK(difference.s[1] == 0.5F);
     // 0.5 / 255 of an encoded value: a step and a half in a picture of 8 bits would be 12 / 255.
     const std::vector<cl_float4> black(1), dark{{{0.5F / 255 / 12.92F, 0, 0, 1}}};
-    CHECK(oit::shown_difference(black, dark) == std::vector<std::uint8_t>{8, 0, 0});
+    CHECK(support::shown_difference(black, dark) == std::vector<std::uint8_t>{8, 0, 0});
 }
 
 }  // namespace
