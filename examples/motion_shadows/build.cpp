@@ -10,7 +10,28 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "input_error.hpp"
+#include "number_text.hpp"
+
 namespace motion {
+namespace {
+
+// The directions of the image of a light: the same as those of support::look_at().
+struct Axes {
+    explicit Axes(const glm::dvec3& axis)
+        : forward(axis),
+          right(glm::normalize(glm::cross(
+              forward, std::abs(axis.y) >= 0.999 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0)))),
+          down(glm::cross(forward, right)) {}
+
+    [[nodiscard]] glm::dvec2 across(const glm::dvec3& ray) const {
+        return {glm::dot(ray, right), glm::dot(ray, down)};
+    }
+
+    glm::dvec3 forward, right, down;
+};
+
+}  // namespace
 
 Shape make_box(const glm::ivec3& cells) {
     Shape shape;
@@ -110,18 +131,13 @@ void aim_light(Scene& scene, const glm::dvec3& position, const glm::dvec3& centr
     constexpr double bright_part = 0.89;  // of the disc of a spot light, without its faded rim
     double half_field = 0;                // tangent
     for (int round = 0; round < 8; ++round) {
-        // The same axes as those of support::look_at().
-        const bool is_steep = std::abs(forward.y) >= 0.999;
-        const glm::dvec3 up = is_steep ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
-        const glm::dvec3 right = glm::normalize(glm::cross(forward, up));
-        const glm::dvec3 down = glm::cross(forward, right);
+        const Axes axes(forward);
         glm::dvec2 low(1e9), high(-1e9);
         half_field = 0;
         for (std::size_t i = 0; i < scene.begin.size(); ++i)
             for (const glm::vec3& p : {scene.begin[i], scene.end[i]}) {
                 const glm::dvec3 ray = glm::dvec3(p) - position;
-                const glm::dvec2 on_map =
-                    glm::dvec2(glm::dot(ray, right), glm::dot(ray, down)) / glm::dot(ray, forward);
+                const glm::dvec2 on_map = axes.across(ray) / glm::dot(ray, forward);
                 low = glm::min(low, on_map);
                 high = glm::max(high, on_map);
                 half_field = std::max({half_field, std::abs(on_map.x), std::abs(on_map.y)});
@@ -130,12 +146,45 @@ void aim_light(Scene& scene, const glm::dvec3& position, const glm::dvec3& centr
             }
         scene.light.target = position + distance * forward;
         const glm::dvec2 middle = 0.5 * (low + high);
-        forward = glm::normalize(forward + middle.x * right + middle.y * down);
+        forward = glm::normalize(forward + middle.x * axes.right + middle.y * axes.down);
     }
     scene.light.is_spot = true;
     scene.light.position = position;
     scene.light.field_degrees = 2 * std::atan(1.01 * half_field) * 180 / std::numbers::pi;
     scene.light.intensity = glm::vec3(glm::dvec3(std::numbers::pi * distance * distance));
+}
+
+void expose(Scene& scene, double exposure) {
+    for (std::size_t i = 0; i < scene.begin.size(); ++i)
+        scene.end[i] =
+            glm::vec3(glm::mix(glm::dvec3(scene.begin[i]), glm::dvec3(scene.end[i]), exposure));
+    if (exposure <= 1) return;
+    const support::Light light = scene.light;
+    const glm::dvec3 forward = glm::normalize(light.target - light.position);
+    for (const glm::vec3& p : scene.end)
+        if (!(glm::dot(glm::dvec3(p) - light.position, forward) > 0))
+            throw support::InputError("--exposure " + support::shortest(exposure) +
+                                      ": the scene moves past its light: give a smaller value");
+    aim_light(scene, light.position, light.target);
+}
+
+void make_light_parallel(Scene& scene) {
+    support::Light& light = scene.light;
+    const Axes axes(glm::normalize(light.target - light.position));
+    glm::dvec2 low(1e9), high(-1e9);
+    for (const auto* positions : {&scene.begin, &scene.end})
+        for (const glm::vec3& p : *positions) {
+            const glm::dvec2 on_map = axes.across(glm::dvec3(p) - light.position);
+            low = glm::min(low, on_map);
+            high = glm::max(high, on_map);
+        }
+    const glm::dvec2 middle = 0.5 * (low + high);
+    const glm::dvec3 move = middle.x * axes.right + middle.y * axes.down;
+    light.is_spot = false;
+    light.position += move;
+    light.target += move;
+    light.side = 1.01 * std::max(high.x - low.x, high.y - low.y);
+    light.intensity = glm::vec3(static_cast<float>(std::numbers::pi));
 }
 
 }  // namespace motion

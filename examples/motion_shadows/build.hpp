@@ -44,4 +44,12 @@ void add_ground(Scene& scene, const glm::dvec2& centre, const glm::dvec2& size,
 /// that faces the light has a radiance of 1 at the distance of `centre`.
 void aim_light(Scene& scene, const glm::dvec3& position, const glm::dvec3& centre);
 
+/// Scales the motion of a scene by `exposure`. Where it exceeds 1, the light's field grows with it.
+/// Throws InputError where the motion passes the light.
+void expose(Scene& scene, double exposure);
+
+/// Replaces a spot light by parallel light along its axis, through a square that just holds all
+/// vertices. A white surface that faces it has a radiance of 1.
+void make_light_parallel(Scene& scene);
+
 }  // namespace motion

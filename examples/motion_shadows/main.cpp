@@ -1,62 +1,92 @@
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wold-style-cast"
-#pragma GCC diagnostic ignored "-Wdouble-promotion"
-// Motion-blurred shadows from depth-time ranges.
-#include <cmath>
-#include <cstdio>
+// Motion-blurred shadows from depth-time ranges, and from other methods.
 #include <iostream>
-#include <cstring>
+#include <vector>
 
-#include "accumulate.hpp"
+#include <cellist/cellist.hpp>
+
+#include "command_line.hpp"
+#include "files.hpp"
 #include "image.hpp"
-#include "renderer.hpp"
+#include "image_difference.hpp"
+#include "json_report.hpp"
+#include "measure.hpp"
+#include "options.hpp"
+#include "report.hpp"
 
-using namespace motion;
-int main(int argc, char** argv) {
-    const std::string name = argc > 1 ? argv[1] : "cubes";
-    const std::string which = argc > 2 ? argv[2] : "exact";
-    Settings s;
-    for (int i = 3; i + 1 < argc; i += 2) {
-        const std::string o = argv[i];
-        const double v = atof(argv[i + 1]);
-        if (o == "n") s.samples = cl_uint(v);
-        if (o == "w") { s.width = int(v); s.height = int(v * 3 / 4); }
-        if (o == "map") s.shadow_map = int(v);
-        if (o == "compress") s.compress = v != 0;
-        if (o == "prepass") s.prepass = v != 0;
-        if (o == "storage") s.storage = v == 1 ? cellist::Storage::counted : v == 2 ? cellist::Storage::fixed : cellist::Storage::linked;
-        if (o == "tol") s.tolerance = float(v);
-        if (o == "bias") s.bias = float(v);
-        if (o == "budget") s.budget_bytes = std::uint64_t(v);
+namespace {
+
+using motion::Measurement;
+using motion::Options;
+using motion::Report;
+
+// The name of a picture of a method, where there are several.
+std::filesystem::path path_for(const std::filesystem::path& path, const Options& options,
+                               const Measurement& measurement) {
+    if (path.empty() || options.method != "all" || support::is_standard_output(path)) return path;
+    return std::filesystem::path(path).replace_filename(
+        path.stem().string() + "-" + std::string(measurement.method) + path.extension().string());
+}
+
+std::vector<cl_float4> shadow_picture(const std::vector<cl_float4>& picture) {
+    std::vector<cl_float4> parts;
+    for (const cl_float4& pixel : picture)
+        parts.push_back({{pixel.s[3], pixel.s[3], pixel.s[3], 1}});
+    return parts;
+}
+
+void write_pictures(const Report& report, std::ostream& screen) {
+    const Options& options = report.options;
+    const int width = options.settings.width, height = options.settings.height;
+    const auto write = [&](const std::filesystem::path& path,
+                           const std::vector<cl_float4>& picture) {
+        if (path.empty()) return;
+        support::write_image(path, picture, width, height);
+        screen << "written " << support::text_of(path) << '\n';
+    };
+    const Measurement* reference = report.reference();
+    if (reference != nullptr) write(options.out_reference, reference->picture);
+    if (options.trade) return;
+    for (const Measurement& m : report.measurements) {
+        if (!options.shows(m.method)) continue;
+        write(path_for(options.out, options, m), m.picture);
+        if (!options.out_shadow.empty())
+            write(path_for(options.out_shadow, options, m), shadow_picture(m.picture));
+        if (options.out_difference.empty() || !m.comparison) continue;
+        support::write_difference(path_for(options.out_difference, options, m), m.picture,
+                                  reference->picture, width, height);
     }
-    const auto device = cellist::Device::choose();
-    const Scene scene = name == "walker" ? make_walker() : name == "fan" ? make_fan() : name == "blinds" ? make_blinds() : make_cubes();
-    std::printf("%zu triangles\n", scene.triangles.size());
-    Renderer r(device, scene, s);
-    std::vector<cl_float4> picture;
-    if (which == "accumulate") {
-        Accumulation a(r.frame());
-        support::Stopwatch w;
-        a.draw(0, s.samples, s.samples);
-        picture = a.picture(s.samples);
-        std::printf("%.1f ms\n", w.ms());
-    } else {
-        auto m = which == "exact" ? make_exact(r.frame()) : which == "tsm" ? make_tsm(r.frame()) : make_still(r.frame());
-        r.draw(*m);
-        r.draw(*m);
-        for (int k = 0; k < 3; ++k) std::printf("frame %.1f ms\n", support::measure_ms(device, [&] { r.draw(*m); }));
-        support::PassTimes t(device);
-        r.draw(*m, &t);
-        for (auto& [p, ms] : t.all()) std::printf("%-12s %8.2f ms\n", p.c_str(), ms);
-        const auto z = m->size();
-        std::printf("ranges %llu pieces %llu bytes %.1f MB slices %llu refused %llu\n", (unsigned long long)z.ranges,
-                    (unsigned long long)z.pieces, z.bytes / 1e6, (unsigned long long)z.slices, (unsigned long long)z.refused);
-        picture = r.picture().download();
-    }
-    double dark = 0; for (auto& p : picture) dark += p.s[3];
-    std::printf("mean dark %.6f\n", dark / picture.size());
-    FILE* f = std::fopen(("/tmp/w/ms_" + name + "_" + which + ".raw").c_str(), "wb");
-    std::fwrite(picture.data(), 16, picture.size(), f);
-    std::fclose(f);
-    support::write_image("/tmp/w/ms_" + name + "_" + which + ".png", picture, s.width, s.height);
+}
+
+bool run(const Options& options) {
+    std::ostream& screen = options.writes_to_stdout() ? std::cerr : std::cout;
+    const cellist::Device device = options.device.empty() ? cellist::Device::choose()
+                                                          : cellist::Device::choose(options.device);
+    const motion::Scene scene = make_scene(options);
+    Report report;
+    report.options = options;
+    report.device = device.info().name;
+    report.driver = device.info().driver;
+    report.triangles = scene.triangles.size();
+    report.measurements = motion::measure(device, scene, options);
+    report.paper = motion::paper_size(device, scene, options.settings);
+    print(screen, report);
+    write_pictures(report, screen);
+    if (!options.json.empty())
+        support::write_file(options.json, support::dump(to_json(report), 2) + '\n');
+    if (!options.csv.empty()) support::write_file(options.csv, to_csv(report));
+    if (options.arguments.empty())
+        screen << "next: --method all compares methods, --reference measures their errors; walker, "
+                  "fan, blinds\nand mesh files are other scenes\n";
+    return true;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+    return support::run_program("cellist-motion-shadows", [&] {
+        const Options options = motion::parse_options(count, arguments);
+        if (options.help_text.empty()) return run(options);
+        std::cout << options.help_text;
+        return true;
+    });
 }

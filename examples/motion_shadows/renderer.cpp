@@ -45,6 +45,10 @@ void Renderer::draw(ShadowMethod& method, support::PassTimes* times) {
     };
     const cl_uint samples = frame_.settings.samples;
     const auto pixels = static_cast<cl_uint>(frame_.pixels());
+    if (samples == 0) {
+        picture_.fill(cl_float4{{0, 0, 0, 0}});
+        return;
+    }
     project();
     end("project");
     frame_.farthest.fill(frame_.settings.prepass ? 0.0F : std::numeric_limits<cl_float>::infinity());

@@ -1,6 +1,7 @@
 #include "view.hpp"
 
 #include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
 
 #include "camera.hpp"
 
