@@ -141,7 +141,7 @@ TEST_CASE("base64 is that of RFC 4648") {
                                       {"fooba", "Zm9vYmE="},
                                       {"foobar", "Zm9vYmFy"},
                                       {"\xFF\xFE\xFD", "//79"}})
-        CHECK(oit::base64(bytes) == text);
+        CHECK(support::base64(bytes) == text);
 }
 
 TEST_CASE("metrics are read from JSON as they were") {
@@ -200,7 +200,7 @@ TEST_CASE("a page needs no other file, and shows names as text") {
     oit::Pictures pictures(reference, frame);
     for (const oit::Measurement& measurement : all.measurements)
         if (measurement.drawn()) pictures.add(measurement.setting, {{{0.5F, 0.5F, 0.5F, 1}}});
-    CHECK(pictures.uris().size() == 2);  // the reference, which all are, and no difference
+    CHECK(pictures.all().uris().size() == 2);  // the reference, which all are, and no difference
     const std::string page = to_html(all, pictures);
     require_self_contained(page);
     CHECK(contains(page, "&lt;script&gt;&lt;b&gt;&quot;&amp;',.obj"));
