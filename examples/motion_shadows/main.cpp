@@ -11,6 +11,7 @@
 #include "json_report.hpp"
 #include "measure.hpp"
 #include "options.hpp"
+#include "page.hpp"
 #include "report.hpp"
 
 namespace {
@@ -68,11 +69,12 @@ bool run(const Options& options) {
     report.driver = device.info().driver;
     report.triangles = scene.triangles.size();
     report.measurements = motion::measure(device, scene, options);
-    report.paper = motion::paper_size(device, scene, options.settings);
+    report.paper = motion::paper_size(device, scene, options);
     print(screen, report);
     write_pictures(report, screen);
     if (!options.json.empty())
         support::write_file(options.json, support::dump(to_json(report), 2) + '\n');
+    if (!options.html.empty()) support::write_file(options.html, to_html(report));
     if (!options.csv.empty()) support::write_file(options.csv, to_csv(report));
     if (options.arguments.empty())
         screen << "next: --method all compares methods, --reference measures their errors; walker, "

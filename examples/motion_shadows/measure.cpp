@@ -87,16 +87,21 @@ std::vector<Measurement> measure(const cellist::Device& device, const Scene& sce
     return all;
 }
 
-PaperSize paper_size(const cellist::Device& device, const Scene& scene, Settings settings) {
+PaperSize paper_size(const cellist::Device& device, const Scene& scene, const Options& options) {
+    Settings settings = options.settings;
     settings.width = settings.height = 1;
     settings.samples = 1;
     settings.prepass = false;
     settings.compress = false;
     Renderer renderer(device, scene, settings);
-    const std::unique_ptr<ShadowMethod> method = make_exact(renderer.frame());
-    renderer.draw(*method);
-    const std::uint64_t ranges = method->size().ranges;
-    return {.ranges = ranges, .fragments = 2 * ranges};
+    const auto size = [&](const std::unique_ptr<ShadowMethod>& method) {
+        renderer.draw(*method);
+        return method->size();
+    };
+    const std::uint64_t ranges = size(make_exact(renderer.frame())).ranges;
+    const bool has_prisms = options.shows("ranges");
+    return {.ranges = ranges,
+            .fragments = has_prisms ? size(make_ranges(renderer.frame())).fragments : 2 * ranges};
 }
 
 }  // namespace motion

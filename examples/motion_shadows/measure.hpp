@@ -26,8 +26,11 @@ struct NamedMethod {
 
 constexpr std::string_view reference_name = "accumulate";
 
-constexpr std::array<NamedMethod, 4> methods{
-    {{"exact", make_exact}, {"tsm", make_tsm}, {"static", make_still}, {reference_name, nullptr}}};
+constexpr std::array<NamedMethod, 5> methods{{{"exact", make_exact},
+                                              {"ranges", make_ranges},
+                                              {"tsm", make_tsm},
+                                              {"static", make_still},
+                                              {reference_name, nullptr}}};
 
 /// How far a picture is from the reference.
 struct Comparison {
@@ -48,10 +51,10 @@ struct Measurement {
     std::optional<Comparison> comparison = {};
 };
 
-/// The sizes that the paper's Equation 2 is about, of the whole shadow map.
+/// What the paper's Equation 2 counts, in the whole shadow map.
 struct PaperSize {
-    std::uint64_t ranges = 0;
-    std::uint64_t fragments = 0;
+    std::uint64_t ranges = 0;     ///< of the method exact
+    std::uint64_t fragments = 0;  ///< of the method ranges if it is drawn, else two for each range
 
     /// Equation 2: 16 bytes a fragment, 24 a range, and two indices a texel.
     [[nodiscard]] std::uint64_t bytes(std::uint64_t texels) const {
@@ -63,8 +66,8 @@ struct PaperSize {
 [[nodiscard]] std::vector<Measurement> measure(const cellist::Device& device, const Scene& scene,
                                                const Options& options);
 
-/// Builds the whole shadow map, in slices.
+/// Builds the whole shadow map.
 [[nodiscard]] PaperSize paper_size(const cellist::Device& device, const Scene& scene,
-                                   Settings settings);
+                                   const Options& options);
 
 }  // namespace motion

@@ -106,7 +106,7 @@ void add_method_options(support::CommandLine& line, Options& options) {
     add_texels(line, "--tolerance", settings.tolerance, tolerance_max,
                "largest error of depth in merged ranges");
     line.add("--memory", "",
-             "limit on the device memory of the lists of ranges, such as 64MiB; they are built in "
+             "limit on the device memory of the ranges of exact, such as 64MiB; they are built in "
              "slices",
              "BYTES",
              [&](Text text) { settings.budget_bytes = support::read_bytes("--memory", text); });
@@ -150,7 +150,7 @@ void check(const support::CommandLine& line, Options& options) {
     for (const auto& [name, path] : pictures)
         if (!path.empty()) (void)support::image_format(path);
     options.reference = options.reference || options.trade || !options.out_difference.empty() ||
-                        !options.out_reference.empty();
+                        !options.out_reference.empty() || !options.html.empty();
     const auto idle = [&](const char* name, bool applies, const std::string& why) {
         return support::IdleOption{name, applies, std::string(name) + why};
     };
@@ -164,8 +164,11 @@ void check(const support::CommandLine& line, Options& options) {
         idle("--times", !options.reference && !options.shows("accumulate"),
              " is for --reference or --method accumulate"),
         idle("--compress", !options.shows("exact"), " is for --method exact"),
+        idle("--memory", !options.shows("exact"), " is for --method exact"),
         idle("--tolerance", !options.shows("exact") || !options.settings.compress,
              " is for --method exact with --compress on"),
+        idle("--html", options.method == reference_name,
+             " compares methods with accumulate: give another --method"),
         not_in_trade("--method", "draws all methods"),
         not_in_trade("--samples", "sets the samples itself"),
         not_in_trade("--out", "writes no picture but those of --html"),

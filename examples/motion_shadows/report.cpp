@@ -67,6 +67,9 @@ void print_one(std::ostream& out, const Report& report, const Measurement& m) {
     if (m.method == reference_name) return;
     if (has_ranges(m)) {
         line("ranges") << grouped(m.size.ranges);
+        if (m.size.fragments > 0)
+            out << " of " << counted(m.size.fragments, "fragment") << ", "
+                << grouped(m.size.unpaired) << " without a partner";
         if (m.size.pieces > 0) out << "; " << grouped(m.size.pieces) << " after compression";
         if (m.size.slices > 0) out << "; in " << counted(m.size.slices, "slice");
         out << "; " << name_of(m.storage) << " lists\n";
@@ -156,12 +159,14 @@ ordered_json json_of(const Report& report, const Measurement& m) {
     json["shadow_map_ms"] = shadow_map_ms(m);
     json["storage"] = has_ranges(m) ? ordered_json(name_of(m.storage)) : ordered_json(nullptr);
     json["fragments"] = m.size.fragments;
+    json["fragments_unpaired"] = m.size.unpaired;
     json["ranges"] = m.size.ranges;
     json["pieces"] = m.size.pieces;
     json["slices"] = m.size.slices;
     json["triangles_refused"] = m.size.refused;
     json["bytes"] = m.size.bytes;
-    json["tsm_bytes"] = tsm_bytes(report, m);
+    json["tsm_bytes"] =
+        m.method == reference_name ? ordered_json(nullptr) : ordered_json(tsm_bytes(report, m));
     const auto& c = m.comparison;
     json["psnr_db"] = c ? support::finite_or_null(c->picture.psnr_db) : ordered_json(nullptr);
     json["ssim"] = c ? ordered_json(c->picture.ssim) : ordered_json(nullptr);

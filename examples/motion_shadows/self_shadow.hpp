@@ -20,10 +20,10 @@ struct SelfShadowing {
     std::uint64_t self_shadowed = 0;
 };
 
-/// Compares the parts of samples in shadow, which the fourth components of pictures are. A pixel
-/// is lit if the reference makes sure that less than 5 % of its samples are in shadow: the upper
-/// end of Wilson's interval, 4 deviations from the mean. It is self-shadowed if so many dark samples
-/// have a probability of less than 3.2e-5 (4 deviations) even at that end.
+/// Compares the parts of samples in shadow, which the fourth components of pictures are. A pixel is
+/// lit if the probability of a dark sample is less than 5 %: that is the upper end of Wilson's
+/// interval for the reference, 4 deviations from the mean. A lit pixel is self-shadowed if the
+/// probability of its dark samples, or more, is less than 3.2e-5 (4 deviations) even at that end.
 [[nodiscard]] SelfShadowing self_shadowing(std::span<const cl_float4> picture,
                                            std::uint32_t samples,
                                            std::span<const cl_float4> reference,
