@@ -10,6 +10,8 @@ namespace motion {
 namespace {
 
 constexpr std::array<cl_uint, 5> trade_samples{8, 16, 20, 32, 64};
+// Lists find their size in the first frame, and make room for it in the second.
+constexpr int warm_up_frames = 2;
 constexpr std::uint32_t pass_frames_max = 5;
 
 Measurement draw_reference(const cellist::Device& device, const Scene& scene,
@@ -37,7 +39,7 @@ Measurement draw_with(const NamedMethod& named, Renderer& renderer, const Option
     const cellist::Device& device = renderer.frame().device;
     const std::unique_ptr<ShadowMethod> method = named.make(renderer.frame());
     Measurement result{.method = named.name, .samples = renderer.frame().settings.samples};
-    renderer.draw(*method);
+    for (int frame = 0; frame < warm_up_frames; ++frame) renderer.draw(*method);
     for (std::uint32_t frame = 0; frame < options.frames; ++frame)
         result.frames_ms.push_back(support::measure_ms(device, [&] { renderer.draw(*method); }));
     result.passes_ms =

@@ -115,7 +115,7 @@ void add_method_options(support::CommandLine& line, Options& options) {
 
 void add_output_options(support::CommandLine& line, Options& options) {
     line.add_number("--frames", options.frames, 1, 1'000'000,
-                    "timed frames, after a warm-up; times are medians");
+                    "timed frames, after two that warm up; times are medians");
     line.add_flag("--reference", options.reference,
                   "compare with accumulate: PSNR, SSIM, and pixels that shadow themselves");
     line.add_flag("--trade", options.trade,
