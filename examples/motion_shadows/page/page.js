@@ -128,6 +128,7 @@ function drawPlots() {
     drawLines("error", seriesOf(row => row.psnr_db ?? undefined),
               "PSNR against the reference, dB; higher is better");
 }
+byId("lines").hidden = sampleCounts.length < 2;
 window.addEventListener("resize", drawPlots);
 drawPlots();
 
@@ -150,8 +151,12 @@ fillTable(byId("methods"), drawn, [
 byId("methods-note").textContent =
     `Self-shadowed pixels are improbably dark, of ` +
     `${drawn[0].pixels_lit.toLocaleString("en")} pixels that the reference has lit. Errors are ` +
-    `against ${referenceName}, which took ${digits(accumulated.ms / 1000)} s.`;
-const passNames = [...new Set(drawn.flatMap(row => Object.keys(row.passes_ms)))];
+    `against ${referenceName}, which took ${digits(accumulated.ms / 1000)} s. Equation 2 of the ` +
+    `paper is ${digits(metrics.equation_2_bytes / 1e6)} MB.`;
+const common = ["project", "visible", "test", "shade"];
+const ownPasses = new Set(drawn.flatMap(row => Object.keys(row.passes_ms))
+    .filter(name => !common.includes(name)));
+const passNames = [...common.slice(0, 2), ...ownPasses, ...common.slice(2)];
 fillTable(byId("passes"), drawn, [
     ["ms", showButton],
     ...passNames.map(name => [
