@@ -43,27 +43,27 @@ TEST_CASE("a run writes its pictures and a report whose keys the document has") 
         CHECK(std::filesystem::file_size(program.folder() / name) > 100);
     }
     const ordered_json report = json_in(program, "r.json");
-    const ordered_json& methods = report["methods"];
-    REQUIRE(methods.size() == motion::methods.size());
-    CHECK(methods[0]["method"] == "accumulate");
-    CHECK(methods[0]["samples"] == 400);
-    CHECK(methods[0]["psnr_db"].is_null());
-    for (std::size_t i = 1; i < methods.size(); ++i) {
-        CHECK(methods[i]["samples"] == 8);
-        CHECK(methods[i]["ms"] > 0);
-        CHECK(methods[i]["bytes"] > 0);
-        CHECK(methods[i]["psnr_db"] > 15);
-        CHECK(methods[i]["pixels_lit"] > 0);
-        CHECK(methods[i]["shadow_map_ms"] > 0);
+    const ordered_json& rows = report["methods"];
+    REQUIRE(rows.size() == motion::methods.size());
+    CHECK(rows[0]["method"] == "accumulate");
+    CHECK(rows[0]["samples"] == 400);
+    CHECK(rows[0]["psnr_db"].is_null());
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+        CHECK(rows[i]["samples"] == 8);
+        CHECK(rows[i]["ms"] > 0);
+        CHECK(rows[i]["bytes"] > 0);
+        CHECK(rows[i]["psnr_db"] > 15);
+        CHECK(rows[i]["pixels_lit"] > 0);
+        CHECK(rows[i]["shadow_map_ms"] > 0);
     }
-    CHECK(report["whole_ranges"] > methods[1]["ranges"]);
-    CHECK(methods[1]["ranges"] > methods[1]["pieces"]);
+    CHECK(report["whole_ranges"] > rows[1]["ranges"]);
+    CHECK(rows[1]["ranges"] > rows[1]["pieces"]);
     const std::uint64_t ranges = report["whole_ranges"], fragments = report["whole_fragments"];
     CHECK(report["equation_2_bytes"] == 16 * fragments + 24 * ranges + 8 * 128 * 128);
-    CHECK(methods[1]["tsm_bytes"] == 4 * 8 * 128 * 128);
+    CHECK(rows[1]["tsm_bytes"] == 4 * 8 * 128 * 128);
 
     const std::string csv = read_file(program.folder() / "r.csv");
-    CHECK(count_of(csv, "\n") == 1 + methods.size());
+    CHECK(count_of(csv, "\n") == 1 + rows.size());
     const std::string page = read_file(program.folder() / "r.html");
     CHECK(contains(page, "cellist-motion-shadows: blinds"));
     CHECK_FALSE(contains(page, "{{"));
