@@ -39,7 +39,7 @@ Frame::Frame(const cellist::Device& its_device, const Scene& its_scene, const Se
       camera(device, its_scene,
              camera_view(its_scene.eye, its_scene.target, its_scene.field_degrees, s.width,
                          s.height)),
-      light(device, its_scene, light_view(its_scene.light, s.shadow_map)),
+      light(device, its_scene, light_view(its_scene.light, s.shadow_map), s.insides),
       shading(shading_of(its_scene, s)),
       keys(device, pixels() * std::clamp<std::size_t>(s.samples, 1, batch_samples)),
       receivers(device, pixels() * std::clamp<std::size_t>(s.samples, 1, batch_samples)),

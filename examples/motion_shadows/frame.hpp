@@ -23,6 +23,7 @@ struct Settings {
     int shadow_map = 1024;    ///< texels along each axis
     cl_uint samples = 20;     ///< of each pixel
     bool prepass = true;      ///< only texels that shadow tests will read
+    bool insides = false;     ///< of closed surfaces, too, in the shadow map
     cl_float bias = 1.0F;     ///< of shadow tests, in texels
     bool compress = false;    ///< merge ranges, and leave out hidden ones
     cl_float tolerance = 0.25F;  ///< of the depth of merged ranges, in texels

@@ -94,6 +94,7 @@ PaperSize paper_size(const cellist::Device& device, const Scene& scene, const Op
     settings.width = settings.height = 1;
     settings.samples = 1;
     settings.prepass = false;
+    settings.insides = true;
     settings.compress = false;
     Renderer renderer(device, scene, settings);
     const auto size = [&](const std::unique_ptr<ShadowMethod>& method) {

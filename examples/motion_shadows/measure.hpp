@@ -51,7 +51,7 @@ struct Measurement {
     std::optional<Comparison> comparison = {};
 };
 
-/// What the paper's Equation 2 counts, in the whole shadow map.
+/// What the paper's Equation 2 counts: in the whole shadow map, with the insides of surfaces.
 struct PaperSize {
     std::uint64_t ranges = 0;     ///< of the method exact
     std::uint64_t fragments = 0;  ///< of the method ranges if it is drawn, else two for each range

@@ -102,6 +102,8 @@ void add_method_options(support::CommandLine& line, Options& options) {
     add_texels(line, "--bias", settings.bias, bias_max, "depth bias of shadow tests");
     add_switch(line, "--prepass", settings.prepass,
                "build only what the shadow tests of the picture can read");
+    add_switch(line, "--insides", settings.insides,
+               "keep the insides of closed surfaces in shadow maps, as the paper does");
     add_switch(line, "--compress", settings.compress, "merge the ranges of exact");
     add_texels(line, "--tolerance", settings.tolerance, tolerance_max,
                "largest error of depth in merged ranges");

@@ -220,6 +220,7 @@ ordered_json to_json(const Report& report) {
     json["shadow_map"] = settings.shadow_map;
     json["bias"] = settings.bias;
     json["prepass"] = settings.prepass;
+    json["insides"] = settings.insides;
     json["compress"] = settings.compress;
     json["tolerance"] = settings.tolerance;
     json["memory"] = settings.budget_bytes == no_budget ? ordered_json(nullptr)

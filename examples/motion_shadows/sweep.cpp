@@ -88,9 +88,11 @@ SceneBuffers::SceneBuffers(const cellist::Device& device, const Scene& scene)
       tile_count(device, 1),
       tiles_range(whole_device(device.info())) {}
 
-SeenScene::SeenScene(const cellist::Device& device, const Scene& scene, const View& its_view)
+SeenScene::SeenScene(const cellist::Device& device, const Scene& scene, const View& its_view,
+                     bool insides)
     : view(its_view),
       vertices(device, scene.begin.size()),
-      sides(device, seen_sides(scene, its_view)) {}
+      sides(device, insides ? std::vector<cl_uchar>(scene.triangles.size(), both_sides)
+                            : seen_sides(scene, its_view)) {}
 
 }  // namespace motion

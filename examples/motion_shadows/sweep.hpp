@@ -42,7 +42,9 @@ constexpr cl_ulong no_key = 0x7FFFFFFFFFFFFFFF;
 
 /// A view of the scene.
 struct SeenScene {
-    SeenScene(const cellist::Device& device, const Scene& scene, const View& its_view);
+    /// With `insides`, also those sides of closed surfaces that never show: see seen_sides().
+    SeenScene(const cellist::Device& device, const Scene& scene, const View& its_view,
+              bool insides = false);
     View view;
     cellist::Buffer<MovingVertex> vertices;
     cellist::Buffer<cl_uchar> sides;  ///< of the triangles: see seen_sides()
