@@ -176,7 +176,7 @@ TEST_CASE("a picture in slices is that of a whole shadow map, bit for bit") {
                 settings.storage = storage;
                 settings.budget_bytes = motion::no_budget;
                 CHECK(is_same(whole, picture_of(scene, settings)));
-                settings.budget_bytes = 1'000'000;
+                settings.budget_bytes = 700'000;
                 std::uint64_t slices = 0;
                 CHECK(is_same(whole, picture_of(scene, settings, &slices)));
                 CHECK(slices > 1);

@@ -93,6 +93,14 @@ public:
             }
             places.push_back(pair.place);
         }
+        return of(vertices, indices, apexes, places);
+    }
+
+    // Of any triangles, two for each place.
+    std::vector<cl_float> of(const std::vector<motion::MovingVertex>& vertices,
+                             const std::vector<cl_uint>& indices,
+                             const std::vector<cl_uint>& apexes,
+                             const std::vector<cl_float2>& places) {
         const auto count = static_cast<cl_uint>(apexes.size());
         Buffer<cl_float> times(device(), times_of_a_triangle * count);
         kernel_.run(Range::padded(count, 64), Buffer(device(), vertices), Buffer(device(), indices),
@@ -109,14 +117,15 @@ bool agree(const cl_float* a, const cl_float* b) {
     return a[0] == b[0] && a[1] == b[1] && a[2] + b[2] == 1;
 }
 
-// Whether the ranges of both triangles, one after the other, are the exposure.
-bool cover_exposure(const cl_float* a, const cl_float* b) {
+// Whether the ranges of triangles, one after the other, are the exposure.
+bool cover_exposure(const cl_float* triangles, std::size_t count) {
     std::vector<std::pair<cl_float, cl_float>> ranges;
-    for (const cl_float* triangle : {a, b}) {
-        const auto count = static_cast<std::size_t>(triangle[3]);
-        if (count > 4) return false;
-        for (std::size_t k = 0; k < count; ++k)
-            ranges.emplace_back(triangle[4 + 2 * k], triangle[5 + 2 * k]);
+    for (std::size_t i = 0; i < count; ++i) {
+        const cl_float* times = triangles + i * times_of_a_triangle;
+        const auto of_this = static_cast<std::size_t>(times[3]);
+        if (of_this > 4) return false;
+        for (std::size_t k = 0; k < of_this; ++k)
+            ranges.emplace_back(times[4 + 2 * k], times[5 + 2 * k]);
     }
     std::sort(ranges.begin(), ranges.end());
     cl_float reached = 0;
@@ -144,7 +153,7 @@ Disagreements try_pairs(std::size_t count, std::mt19937& random, const MakePair&
             const cl_float* a = &times[2 * i * times_of_a_triangle];
             const cl_float* b = a + times_of_a_triangle;
             if (!agree(a, b)) ++found.edges;
-            if (!cover_exposure(a, b)) ++found.exposures;
+            if (!cover_exposure(a, 2)) ++found.exposures;
             if (a[0] < 1) ++found.with_changes;
         }
     }
@@ -270,6 +279,40 @@ TEST_CASE("an edge that turns about the place, or only touches it, leaves no gap
     });
     CHECK(found.edges == 0);
     CHECK(found.exposures == 0);
+}
+
+TEST_CASE("of the triangles around a vertex that stays on the place, one covers it") {
+    CELLIST_RANDOM(random, 14);
+    constexpr std::size_t fans = 50'000, triangles = 6;
+    std::vector<motion::MovingVertex> vertices;
+    std::vector<cl_uint> indices;
+    std::vector<cl_float2> places;
+    for (std::size_t i = 0; i < fans; ++i) {
+        const cl_float2 place = random_texel(random);
+        const glm::dvec2 centre(place.s[0], place.s[1]);
+        const auto first = static_cast<cl_uint>(vertices.size());
+        vertices.push_back(vertex(centre, centre));
+        const bool moves = random() % 4 != 0;
+        for (std::size_t k = 0; k < triangles; ++k) {
+            const auto rim = [&] {
+                const double angle = 1.047198 * (double(k) + between(random, -0.3, 0.3));
+                return centre +
+                       between(random, 5, 50) * glm::dvec2(std::cos(angle), std::sin(angle));
+            };
+            const glm::dvec2 begin = rim();
+            vertices.push_back(vertex(begin, moves ? rim() : begin));
+            const auto a = first + 1 + static_cast<cl_uint>(k);
+            const auto b = first + 1 + static_cast<cl_uint>((k + 1) % triangles);
+            indices.insert(indices.end(), {first, a, b});
+            if (k % 2 == 0) places.push_back(place);
+        }
+    }
+    const std::vector<cl_float> times =
+        EdgeTimes().of(vertices, indices, std::vector<cl_uint>(fans * triangles), places);
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < fans; ++i)
+        if (!cover_exposure(&times[i * triangles * times_of_a_triangle], triangles)) ++wrong;
+    CHECK(wrong == 0);
 }
 
 }  // namespace
