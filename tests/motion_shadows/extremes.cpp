@@ -23,7 +23,7 @@ namespace cellist::test {
 namespace {
 
 const std::vector<std::function<std::unique_ptr<motion::ShadowMethod>(const motion::Frame&)>>
-    methods{motion::make_exact, motion::make_tsm, motion::make_still};
+    all_methods{motion::make_exact, motion::make_tsm, motion::make_still};
 
 constexpr double no_limit = std::numeric_limits<double>::infinity();
 
@@ -133,7 +133,7 @@ TEST_CASE("a triangle that is always a line or a point is never seen") {
     }
     CHECK(RangeMap(device(), scene, 64).ranges().records().empty());
     // No picture shows them.
-    for (const auto& make : methods) {
+    for (const auto& make : all_methods) {
         motion::Renderer renderer(device(), scene, {.width = 64, .height = 64, .shadow_map = 64});
         const auto method = make(renderer.frame());
         renderer.draw(*method);
@@ -306,7 +306,7 @@ TEST_CASE("0, 1 and 10,000 samples, pictures and shadow maps of 1 by 1") {
     scene.target = {0.14, 1.3, -0.08};
     for (const int side : {1, 5})
         for (const cl_uint samples : {0U, 1U, 31U, 32U, 33U, side == 1 ? 10'000U : 65U})
-            for (const auto& make : methods) {
+            for (const auto& make : all_methods) {
                 const motion::Settings settings{
                     .width = side, .height = side, .shadow_map = side, .samples = samples};
                 INFO(side << ", " << samples << " samples");
@@ -349,7 +349,7 @@ TEST_CASE("an exposure of 0 has the shadows of a single moment") {
     motion::Settings settings{.width = 160, .height = 120, .shadow_map = 256, .samples = 4};
     settings.compress = false;
     std::vector<std::vector<cl_float4>> pictures;
-    for (const auto& make : methods) {
+    for (const auto& make : all_methods) {
         motion::Renderer renderer(device(), scene, settings);
         const auto method = make(renderer.frame());
         renderer.draw(*method);
@@ -366,7 +366,7 @@ TEST_CASE("an exposure of 0 has the shadows of a single moment") {
 TEST_CASE("a scene without triangles is a picture of the background") {
     const motion::Scene scene;
     for (const bool compress : {false, true})
-        for (const auto& make : methods) {
+        for (const auto& make : all_methods) {
             const motion::Settings settings{
                 .width = 8, .height = 6, .shadow_map = 8, .samples = 2, .compress = compress};
             motion::Renderer renderer(device(), scene, settings);
