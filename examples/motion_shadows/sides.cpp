@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <numeric>
 
@@ -14,9 +15,11 @@ using Index = std::uint32_t;
 
 // Numbers the vertices so that those with the same way have the same number: the first of these.
 std::vector<Index> welded(const Scene& scene) {
+    // Bits have an order even where coordinates are NaN. -0 + 0 is 0.
+    const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x + 0.0F); };
     const auto way = [&](Index i) {
         const glm::vec3 &a = scene.begin[i], &b = scene.end[i];
-        return std::array{a.x, a.y, a.z, b.x, b.y, b.z};
+        return std::array{bits(a.x), bits(a.y), bits(a.z), bits(b.x), bits(b.y), bits(b.z)};
     };
     std::vector<Index> order(scene.begin.size());
     std::iota(order.begin(), order.end(), Index{0});
