@@ -47,7 +47,6 @@ TEST_CASE("a receiver is in shadow for as long as double precision says") {
     scenes.back().light.side = 4;
     scenes.back().name = "cubes, parallel light";
     const std::size_t pairs = pairs_to_try() / scenes.size() + 1;
-    Errors all_of_vertices, all_of_positions;
     for (const motion::Scene& scene : scenes) {
         RangeMap map(device(), scene, side);
         const motion::View& view = map.view();
@@ -102,8 +101,8 @@ TEST_CASE("a receiver is in shadow for as long as double precision says") {
                 const auto occluded = [&](const std::vector<Blocker>& blockers) {
                     Times times;
                     for (const Blocker& b : blockers) {
-                        const Times part =
-                            nearer_times(b.triangle, place, b.times, view.near_depth, limit);
+                        const Times part = nearer_times(b.triangle, place, b.times,
+                                                        double(view.near_depth), limit);
                         times.insert(times.end(), part.begin(), part.end());
                     }
                     return total(std::move(times));

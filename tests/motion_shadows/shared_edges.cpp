@@ -18,7 +18,7 @@
 namespace cellist::test {
 namespace {
 
-constexpr std::size_t corners_of_a_pair = 6, times_of_a_triangle = 12;
+constexpr std::size_t times_of_a_triangle = 12;
 
 // Of each triangle: changes of the shared edge, its side, number of ranges, and up to 4 ranges.
 // The shared edge is opposite of the corner that `apexes` names.
