@@ -52,10 +52,11 @@ static inline float4 edge_point(float4 a, float4 b, float part) {
 static inline float4 side_centre(float4 a0, float4 b0, float4 b1, float4 a1) {
     const float4 mean = 0.25f * (a0 + b0 + b1 + a1);
     if (!(fmin(fmin(a0.z, b0.z), fmin(b1.z, a1.z)) > 0.0f)) return mean;
+    // Edges that share an end do not cross there, whatever rounding says.
+    if (all(a0 == a1) || all(b0 == b1) || all(a0 == b1) || all(b0 == a1)) return mean;
     const float2 a = a0.xy / a0.z, b = b0.xy / b0.z, c = a1.xy / a1.z, d = b1.xy / b1.z;
     const float of_a = cross2(d - c, a - c), of_b = cross2(d - c, b - c);
     const float of_c = cross2(b - a, c - a), of_d = cross2(b - a, d - a);
-    // Edges that share an end do not cross there: one of these is exactly 0.
     if (!(of_a * of_b < 0.0f && of_c * of_d < 0.0f)) return mean;
     const float s = of_a / (of_a - of_b), u = of_c / (of_c - of_d);
     return 0.5f * (edge_point(a0, b0, s) + edge_point(a1, b1, u));

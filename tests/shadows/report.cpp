@@ -9,6 +9,7 @@
 #include "json_report.hpp"
 #include "oit/support/program.hpp"
 #include "support/catch.hpp"
+#include "support/device.hpp"
 
 namespace cellist::test {
 namespace {
@@ -101,9 +102,14 @@ TEST_CASE("options that cannot be used are refused in one line") {
         {"--trade --reference", "--trade"},
         {"--trade --out-a a.png", "--trade"},
         {"--storage none", "none"},
-        {"--width 16384 --height 16384", "limit"},
     };
     for (const auto& [arguments, named] : table) program.require_refused(arguments, named);
+}
+
+TEST_CASE("a picture that exceeds the memory of the device is refused in one line") {
+    // It takes more than 64 GB.
+    if (device().info().global_memory_bytes > 64'000'000'000) CELLIST_SKIP("the device can hold it");
+    Program(CELLIST_SHADOWS_PROGRAM).require_refused("--width 16384 --height 16384", "limit");
 }
 
 TEST_CASE("any mesh stands in the room") {
