@@ -10,6 +10,7 @@
 #include "oit/support/program.hpp"
 #include "support/catch.hpp"
 #include "support/device.hpp"
+#include "support/skip.hpp"
 
 namespace cellist::test {
 namespace {
