@@ -1,20 +1,21 @@
-// Fewer ranges with the same shadows, but for a bounded error of depth: ranges that touch in time
-// and depth are merged where the depth stays linear, and what another range hides for all of its
-// time is left out.
+// Merges ranges that touch in time and depth where one line in time is close to their depths.
+// Leaves out a merged range that another open one hides for all of its time. So a texel has fewer
+// ranges, and the error of their depths stays within the tolerance.
 //
-// A stretch of a range whose depth deviates from its chord by at most LINEAR_PART of the tolerance
-// counts as linear. Ends of stretches stay within the rest of the tolerance, so all depths between
-// do, too.
+// A stretch of a range counts as linear if its depth deviates from its chord by at most LINEAR_PART
+// of the tolerance. A merged range stays within the rest of the tolerance at the ends of each
+// stretch. So the sum of both errors is within the tolerance at all times.
 
-// Merged ranges that are still growing in a texel.
+// Merged ranges of a texel that are open: they may still grow.
 #define OPEN_MAX 4
 #define LINEAR_PART 0.125f
-// A stretch that is at most this part of a range counts as linear. Times at which the depth passes
-// the near plane are off by less than NEAR_LEAST.
+// A stretch that is at most STRETCH_LEAST of a range counts as linear. Times at which the depth
+// passes the near plane are off by less than NEAR_LEAST.
 #define STRETCH_LEAST 0x1p-10f
 #define NEAR_LEAST 0x1p-16f
 
-// A range that grows: its depth is depth + slope * (t - begin), for any slope between the two.
+// An open merged range. Its depth is depth + slope * (t - begin), for any slope from least_slope to
+// most_slope.
 typedef struct {
     float begin, end;
     float depth, last;  // at its begin and its end so far
@@ -31,7 +32,7 @@ static inline float open_depth(const OpenPiece* p, float time) {
     return fma(open_slope(p), time - p->begin, p->depth);
 }
 
-// Whether `front` is nearer than `p` for all of the time of `p`, with any slope that it may get.
+// Whether `front` is nearer than `p` for all of the time of `p`, whatever slope `front` gets.
 static inline int open_hides(const OpenPiece* front, const OpenPiece* p) {
     return front->begin <= p->begin && front->end >= p->end &&
            fma(front->most_slope, p->begin - front->begin, front->depth) <
@@ -64,7 +65,7 @@ static inline int open_extend(OpenPiece* p, const Stretch s, float allowed) {
     return 1;
 }
 
-// Takes piece `which` out: stores it, unless another one hides it.
+// Closes piece `which`, and stores it unless another open piece hides it.
 static inline void close_piece(CELLIST_LISTS(DepthPiece, pieces), uint texel, OpenPiece* open,
                                const int which) {
     const OpenPiece p = open[which];
@@ -86,7 +87,7 @@ static inline void add_stretch(CELLIST_LISTS(DepthPiece, pieces), uint texel, Op
             return;
     OpenPiece fresh = {s.begin, s.begin, s.at_begin, s.at_begin, -INFINITY, INFINITY};
     open_extend(&fresh, s, allowed);
-    // The one that ended first makes room; those that are closed have ended at -1.
+    // The piece that ended first makes room. Closed pieces end at -1.
     float first_end = open[0].end;
 #pragma unroll
     for (int k = 1; k < OPEN_MAX; ++k) first_end = fmin(first_end, open[k].end);
@@ -113,7 +114,7 @@ kernel void compress_ranges(CELLIST_LISTS(DepthPiece, pieces), CELLIST_LISTS(Vis
     for (int k = 0; k < OPEN_MAX; ++k) open[k].end = -1.0f;
     cellist_for_each(ranges, texel, node) {
         const VisibleRange range = cellist_get(ranges, node);
-        // What ended before cannot grow any more.
+        // Pieces that ended earlier cannot grow any more.
 #pragma unroll
         for (int k = 0; k < OPEN_MAX; ++k)
             if (open[k].end >= 0.0f && open[k].end < range.begin)
@@ -131,7 +132,8 @@ kernel void compress_ranges(CELLIST_LISTS(DepthPiece, pieces), CELLIST_LISTS(Vis
             const float farthest = fmax(fmax(s.at_begin, at_first), fmax(at_second, s.at_end));
             const float error = tolerance * light.pixel *
                                 (light.is_parallel ? 1.0f : fmax(nearest, light.near_depth));
-            // A cubic may deviate by a third more between these places.
+            // Between these times, a cubic deviates by at most 1.3 times as much. The depth is a
+            // cubic over a quadratic, which is close to a cubic on a short stretch.
             const float slope = (s.at_end - s.at_begin) / 3.0f;
             const float bend = 1.34f * fmax(fabs(at_first - s.at_begin - slope),
                                             fabs(s.at_end - at_second - slope));

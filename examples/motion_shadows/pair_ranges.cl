@@ -1,6 +1,6 @@
 // Pairs fragments of the same prism into depth-time ranges (Hong and Oh, 2018, section 4.3).
 
-// A fragment that has no partner is inserted nowhere, which counts it.
+// Counts a fragment without a partner: the lists reject it.
 static inline void drop_fragment(CELLIST_LISTS(DepthTimeRange, ranges)) {
     const DepthTimeRange none = {0.0f, 0.0f, 0.0f, 0.0f, 0};
     cellist_insert(ranges, CELLIST_NONE, none);

@@ -1,4 +1,4 @@
-// The picture from its samples. sums[pixel] is linear RGB and the number of samples in shadow.
+// Makes the picture from samples. sums[pixel] is linear RGB and the number of samples in shadow.
 
 // One work-item a pixel: adds the samples of a batch.
 kernel void add_samples(const Shading shading, const Sampling sampling,
@@ -14,14 +14,14 @@ kernel void add_samples(const Shading shading, const Sampling sampling,
             continue;
         }
         const int is_blocked = (r.triangle & RECEIVER_BLOCKED) != 0;
-        sum.xyz += shaded(shading, albedos[r.triangle & ~RECEIVER_BLOCKED],
-                          is_blocked ? 0.0f : r.light);
+        sum.xyz +=
+            shaded(shading, albedos[r.triangle & ~RECEIVER_BLOCKED], is_blocked ? 0.0f : r.light);
         sum.w += (float)is_blocked;
     }
     sums[pixel] = sum;
 }
 
-// One work-item a pixel: adds one moment, from the nearest triangles of the camera and of the light.
+// One work-item a pixel: adds one moment, from the nearest triangles to the camera and the light.
 kernel void add_moment(RECEIVER_SCENE, global const ulong* seen_keys, global const ulong* lit_keys,
                        float time, float offset_x, float offset_y, global const float4* albedos,
                        global float4* sums) {
@@ -42,7 +42,7 @@ kernel void add_moment(RECEIVER_SCENE, global const ulong* seen_keys, global con
                             (float)is_blocked);
 }
 
-// One work-item a pixel: the mean of so many samples; 0 where there are none.
+// One work-item a pixel: the mean of `samples` samples, or 0 if there are none.
 kernel void finish_picture(global const float4* sums, uint pixels, uint samples,
                            global float4* picture) {
     const uint pixel = get_global_id(0);

@@ -1,6 +1,6 @@
 // Pass: the nearest triangle at each sample of a pixel, at the sample's own place and time
-// (stochastic rasterisation, McGuire, Enderton, Shirley, Luebke 2010). keys[sample * pixels + pixel]
-// holds its depth, and its number in the lower half.
+// (stochastic rasterisation: McGuire, Enderton, Shirley, Luebke, 2010).
+// keys[sample * pixels + pixel]: see keys.clh.
 #pragma OPENCL EXTENSION cl_khr_int64_extended_atomics : enable
 
 #define SWEEP_TARGET volatile global ulong *keys, const Sampling sampling

@@ -1,5 +1,5 @@
 // Pass: the times at which triangles cover the centres of texels.
-#define SWEEP_TARGET CELLIST_LISTS(VisibleRange, ranges), global const float *farthest
+#define SWEEP_TARGET CELLIST_LISTS(VisibleRange, ranges), global const float* farthest
 #define SWEEP_TARGET_PASS CELLIST_PASS(ranges), farthest
 #define SWEEP_REACH 0.0f
 #ifdef SWEEP_GROUP

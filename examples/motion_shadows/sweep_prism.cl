@@ -1,10 +1,10 @@
-// Pass: the fragments of the prism of a moving triangle at the centres of texels (Hong and Oh,
-// 2018, section 4.1). The prism is the triangle at t = 0 and at t = 1, and a side for each edge. A
+// Pass: fragments of the prism of a moving triangle at the centres of texels (Hong and Oh, 2018,
+// section 4.1). The prism is the triangle at t = 0 and at t = 1, and a side for each edge. A
 // side has four facets, which meet in its centre.
 //
 // Signs of edge functions are exact for the rounded corners, and each edge has one sign for all of
-// its facets. So the light's ray through a texel meets an even number of facets. Fragments at and
-// beyond the light's plane count, for the same reason.
+// its facets. So the light's line through a texel meets an even number of facets. Fragments at and
+// behind the light's plane count too, or the number could be odd.
 #define SWEEP_TARGET CELLIST_LISTS(PrismFragment, fragments), global const float* farthest
 #define SWEEP_TARGET_PASS CELLIST_PASS(fragments), farthest
 #define SWEEP_REACH 0.0f
@@ -13,7 +13,7 @@
 #endif
 
 // Corners are 0 to 2 at t = 0, 3 to 5 at t = 1, and 6 to 8 in the centres of the sides. Side k lies
-// opposite to vertex k. Facets are 4 k to 4 k + 3 of side k, then 12 for the triangle at t = 0 and
+// opposite vertex k. Facets are 4 k to 4 k + 3 of side k, then 12 for the triangle at t = 0 and
 // 13 for that at t = 1.
 #define PRISM_FACETS 14
 
@@ -32,7 +32,7 @@ static inline float4 corner_from(float4 vertex, float2 place) {
 }
 
 // Whether the place is on the positive side of the edge. A place on the edge counts as if it were
-// moved a little along y, and much less along x.
+// moved slightly along y, and much less along x.
 static inline uint edge_side(float4 a, float4 b) {
     float side = cross2(a.xy, b.xy);
     if (side == 0.0f) side = difference_of_products(a.z, b.x, b.z, a.x);
@@ -69,8 +69,8 @@ static inline void sweep_refuse(SWEEP_TARGET) {
 
 static inline uint is_inside(uint sides) { return (uint)(sides == 0 || sides == 7); }
 
-// The facets that cover the place in front of which the corners lie, a bit each. Adds the corners 6
-// to 8 where it needs them.
+// The facets that cover a place, a bit each. Corners are relative to the place. Adds the corners 6
+// to 8 of facets that may cover it.
 static inline uint covering_facets(const MovingTriangle* t, float4* corner) {
     // The sides of the edges at t = 0 and t = 1, and of the vertices' paths.
     uint begin = 0, end = 0, path = 0;

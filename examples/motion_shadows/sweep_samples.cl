@@ -1,7 +1,7 @@
 // Pass: the nearest depth at each sample of a texel, at the sample's own time: a time-dependent
-// shadow map (Akenine-Moeller, Munkberg, Hasselgren: "Stochastic rasterization using time-continuous
-// triangles", 2007; McGuire, Enderton, Shirley, Luebke: "Real-time stochastic rasterization on
-// conventional GPU architectures", 2010). depths[sample * texels + texel]
+// shadow map (Akenine-Moeller, Munkberg, Hasselgren: "Stochastic rasterization using
+// time-continuous triangles", 2007; McGuire, Enderton, Shirley, Luebke: "Real-time stochastic
+// rasterization on conventional GPU architectures", 2010). depths[sample * texels + texel].
 #define SWEEP_TARGET                                                                               \
     volatile global uint *depths, global const float *farthest, const Sampling sampling
 #define SWEEP_TARGET_PASS depths, farthest, sampling
@@ -25,6 +25,7 @@ static inline void sweep_part(SWEEP_TARGET, const View view, const MovingTriangl
         return;
     volatile global uint* nearest =
         depths + (size_t)part * (uint)(view.width * view.height) + texel;
-    // Positive floats are ordered as their bits are. Depths only fall, so a stale one does no harm.
+    // Positive floats are ordered as their bits are. Depths only fall, so a stale depth does no
+    // harm.
     if (as_uint(depth) < *nearest) atomic_min(nearest, as_uint(depth));
 }

@@ -1,5 +1,5 @@
-// Pass: the nearest triangle at the same place of each pixel, at one time. keys[pixel] as in
-// sweep_camera.cl.
+// Pass: the nearest triangle at one time, at the same place in each pixel. keys[pixel]: see
+// keys.clh.
 #pragma OPENCL EXTENSION cl_khr_int64_extended_atomics : enable
 
 #define SWEEP_TARGET volatile global ulong *keys, float still_time, float offset_x, float offset_y

@@ -1,10 +1,10 @@
-// Shadow test: a triangle covers the texel at the sample's time and is nearer then.
+// Shadow test: a triangle covers the texel at the sample's time, and is nearer at that time.
 #define TEST_TARGET CELLIST_LISTS(VisibleRange, ranges)
 #define TEST_TARGET_PASS CELLIST_PASS(ranges)
 
-static inline int is_blocked(TEST_TARGET, TEST_LIGHT, const Receiver r, float time,
-                             uint sample) {
-    const float2 place = pixel_centre(light, (int)r.texel % light.width, (int)r.texel / light.width);
+static inline int is_blocked(TEST_TARGET, TEST_LIGHT, const Receiver r, float time, uint sample) {
+    const float2 place =
+        pixel_centre(light, (int)r.texel % light.width, (int)r.texel / light.width);
     cellist_for_each(ranges, r.texel, node) {
         const VisibleRange range = cellist_get(ranges, node);
         if (range.begin > time || range.end <= time || range.triangle == r.triangle) continue;

@@ -2,8 +2,7 @@
 #define TEST_TARGET CELLIST_LISTS(DepthPiece, pieces)
 #define TEST_TARGET_PASS CELLIST_PASS(pieces)
 
-static inline int is_blocked(TEST_TARGET, TEST_LIGHT, const Receiver r, float time,
-                             uint sample) {
+static inline int is_blocked(TEST_TARGET, TEST_LIGHT, const Receiver r, float time, uint sample) {
     cellist_for_each(pieces, r.texel, node) {
         const DepthPiece piece = cellist_get(pieces, node);
         if (!(piece.begin <= time && time < piece.end)) continue;

@@ -1,7 +1,7 @@
-// What the camera sees at each sample, as receivers of shadows: receivers[sample * pixels + pixel].
+// Turns what the camera sees at each sample into receivers: receivers[sample * pixels + pixel].
 
-// One work-item a sample. farthest[texel] becomes the greatest limit of its receivers: what is
-// farther from the light blocks nothing.
+// One work-item a sample. farthest[texel] becomes the greatest limit of the texel's receivers: what
+// is farther from the light blocks none of them.
 kernel void make_receivers(RECEIVER_SCENE, const Sampling sampling, global const ulong* keys,
                            global Receiver* receivers, global float* farthest) {
     const uint pixel = get_global_id(0), pixels = (uint)(camera.width * camera.height);
@@ -17,7 +17,7 @@ kernel void make_receivers(RECEIVER_SCENE, const Sampling sampling, global const
                         sample_time(pixel, sample, sampling.samples, 0));
     receivers[place] = r;
     if (r.texel == CELLIST_NONE || !(r.limit > 0.0f)) return;
-    // Positive floats are ordered as their bits are. The value only grows, so a stale one does no
+    // Positive floats are ordered as their bits are. Limits only grow, so a stale limit does no
     // harm.
     volatile global uint* bits = (volatile global uint*)farthest + r.texel;
     if (as_uint(r.limit) > *bits) atomic_max(bits, as_uint(r.limit));
