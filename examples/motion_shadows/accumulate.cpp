@@ -44,8 +44,8 @@ void Accumulation::draw(cl_uint first, cl_uint count, cl_uint moments) {
         sweep_.run(scene, frame_.light, lit_, time, 0.0F, 0.0F);
         add_moment_.run(cellist::Range::padded(frame_.pixels(), 64), frame_.camera.view,
                         frame_.camera.vertices, frame_.light.view, frame_.light.vertices,
-                        scene.indices, scene.begin, scene.end, frame_.shading, seen_, lit_, time,
-                        x, y, scene.albedos, sums_);
+                        scene.indices, scene.begin, scene.end, frame_.shading, seen_, lit_, time, x,
+                        y, scene.albedos, sums_);
     }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <functional>
+#include <vector>
 
 #include "renderer.hpp"
 
@@ -11,8 +11,8 @@ class Accumulation {
 public:
     explicit Accumulation(Frame& frame);
 
-    /// Draws so many moments, spread over the exposure, from the next one of `moments` on. The first
-    /// call clears the picture.
+    /// Draws `count` of the `moments` that divide the exposure, from moment `first` on. Moment 0
+    /// clears the picture first.
     void draw(cl_uint first, cl_uint count, cl_uint moments);
 
     /// The mean of the first `moments`, as Renderer::picture().

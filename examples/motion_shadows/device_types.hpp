@@ -7,8 +7,8 @@ namespace motion {
 /// A camera or a light and its image, as kernels take them. Image coordinates count pixels from the
 /// centre of the image, x to the right and y down.
 struct View {
-    /// Rows that take a position (x, y, z, 1) to x * w, y * w, w, and depth along the axis. w is the
-    /// depth in a perspective view and 1 in a parallel one.
+    /// Rows that take a position (x, y, z, 1) to x * w, y * w, w, and depth along the axis. w is
+    /// the depth in a perspective view, and 1 in a parallel view.
     cl_float4 row_x, row_y, row_w, row_depth;
     cl_float near_depth;  ///< nothing nearer than this is drawn or casts a shadow
     cl_float pixel;       ///< the size of a pixel at depth 1, or everywhere in a parallel view
@@ -27,7 +27,9 @@ CELLIST_STRUCT(MovingVertex, begin, end);
 /// A rectangle of the pixels that a triangle sweeps over.
 struct SweepTile {
     cl_uint triangle;
-    cl_uint place;  ///< its number among those of the triangle, row by row + 65536 * size (sweep.clh)
+    /// The number of the tile in its triangle, row by row; plus 65536 * the shift of its size in
+    /// sweep_divide().
+    cl_uint place;
 };
 CELLIST_STRUCT(SweepTile, triangle, place);
 
@@ -73,20 +75,19 @@ CELLIST_STRUCT(Receiver, triangle, texel, limit, light);
 /// The samples of a pixel.
 struct Sampling {
     cl_uint samples;       ///< of each pixel
-    cl_uint first, count;  ///< of these in this batch
+    cl_uint first, count;  ///< the first sample and the number of samples in this batch
 };
 CELLIST_STRUCT(Sampling, samples, first, count);
 
 /// What surfaces look like.
 struct Shading {
-    cl_float4 light;      ///< position of a spot light and 1, or direction to a parallel light and 0
+    cl_float4 light;      ///< position of a spot light, 1; or direction to a parallel light, 0
     cl_float4 eye;        ///< position, and 1
     cl_float4 intensity;  ///< linear RGB; of a spot light at distance 1
-    cl_float4 axis;       ///< where a spot light shines, of length 1
     cl_float4 ambient;    ///< linear RGB
     cl_float4 background;
     cl_float bias;  ///< of shadow tests, in texels
 };
-CELLIST_STRUCT(Shading, light, eye, intensity, axis, ambient, background, bias);
+CELLIST_STRUCT(Shading, light, eye, intensity, ambient, background, bias);
 
 }  // namespace motion

@@ -1,6 +1,5 @@
 // Ranges of time in which triangles cover the centres of texels, and depth from the moving plane.
 #include "method.hpp"
-
 #include "motion_kernels.hpp"
 
 namespace motion {
@@ -14,8 +13,8 @@ public:
           pieces_(f.device, {f.texels()}, {.storage = f.storage()}),
           sweep_(f.device, kernels::sweep_exact_cl, ranges_),
           test_ranges_(f.device, kernels::test_exact_cl, ranges_),
-          compress_(moving_kernel(f.device, kernels::compress_cl, "compress_ranges", pieces_,
-                                  ranges_)),
+          compress_(
+              moving_kernel(f.device, kernels::compress_cl, "compress_ranges", pieces_, ranges_)),
           test_pieces_(f.device, kernels::test_pieces_cl, pieces_) {}
 
     void mark_shadows(Frame& frame, const Sampling& batch, support::PassTimes* times) override {
@@ -61,15 +60,15 @@ private:
         else
             ranges_.sort(&VisibleRange::begin);
         if (times != nullptr) times->end("sort");
-        size_.pieces += pieces_
-                            .build([&] {
-                                compress_.run(cellist::Range::padded(texels, 64), pieces_, ranges_,
-                                              frame.light.view, frame.light.vertices,
-                                              frame.scene.indices, static_cast<cl_uint>(first),
-                                              static_cast<cl_uint>(texels),
-                                              frame.settings.tolerance);
-                            })
-                            .stored;
+        size_.pieces +=
+            pieces_
+                .build([&] {
+                    compress_.run(cellist::Range::padded(texels, 64), pieces_, ranges_,
+                                  frame.light.view, frame.light.vertices, frame.scene.indices,
+                                  static_cast<cl_uint>(first), static_cast<cl_uint>(texels),
+                                  frame.settings.tolerance);
+                })
+                .stored;
         if (times != nullptr) times->end("compress");
     }
 

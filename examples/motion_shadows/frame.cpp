@@ -6,7 +6,6 @@
 
 #include "input_error.hpp"
 #include "motion_kernels.hpp"
-#include "renderer.hpp"
 #include "view.hpp"
 
 namespace motion {
@@ -36,9 +35,9 @@ Frame::Frame(const cellist::Device& its_device, const Scene& its_scene, const Se
     : device(its_device),
       settings(s),
       scene(device, its_scene),
-      camera(device, its_scene,
-             camera_view(its_scene.eye, its_scene.target, its_scene.field_degrees, s.width,
-                         s.height)),
+      camera(
+          device, its_scene,
+          camera_view(its_scene.eye, its_scene.target, its_scene.field_degrees, s.width, s.height)),
       light(device, its_scene, light_view(its_scene.light, s.shadow_map), s.insides),
       shading(shading_of(its_scene, s)),
       keys(device, pixels() * std::clamp<std::size_t>(s.samples, 1, batch_samples)),
@@ -51,7 +50,7 @@ std::size_t Frame::pixels() const {
 }
 
 cellist::Storage Frame::storage() const {
-    // Processors test lists faster that are in one piece.
+    // Processors test contiguous lists faster.
     return settings.storage.value_or(device.info().one_thread_per_work_group
                                          ? cellist::Storage::counted
                                          : cellist::Storage::linked);

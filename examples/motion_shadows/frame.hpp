@@ -15,21 +15,24 @@
 
 namespace motion {
 
+/// Samples of each pixel that are drawn at once; more are drawn in batches.
+constexpr std::size_t batch_samples = 64;
+
 constexpr std::uint64_t no_budget = std::numeric_limits<std::uint64_t>::max();
 
 struct Settings {
     int width = 1024;
     int height = 768;
-    int shadow_map = 1024;    ///< texels along each axis
-    cl_uint samples = 20;     ///< of each pixel
-    bool prepass = true;      ///< only texels that shadow tests will read
-    bool insides = false;     ///< of closed surfaces, too, in the shadow map
-    cl_float bias = 1.0F;     ///< of shadow tests, in texels
-    bool compress = false;    ///< merge ranges, and leave out hidden ones
+    int shadow_map = 1024;       ///< texels along each axis
+    cl_uint samples = 20;        ///< of each pixel
+    bool prepass = true;         ///< only texels that shadow tests will read
+    bool insides = false;        ///< of closed surfaces, too, in the shadow map
+    cl_float bias = 1.0F;        ///< of shadow tests, in texels
+    bool compress = false;       ///< merge ranges, and leave out hidden ones
     cl_float tolerance = 0.25F;  ///< of the depth of merged ranges, in texels
-    /// Of the lists of ranges, which are then built in slices.
+    /// The memory of the lists of ranges. With a limit, they are built in slices.
     std::uint64_t budget_bytes = no_budget;
-    /// Of the lists; without it, what is fastest for them on the device.
+    /// The storage of the lists; without it, the fastest on the device.
     std::optional<cellist::Storage> storage = {};
 };
 
@@ -48,7 +51,7 @@ struct Frame {
     Shading shading;
     cellist::Buffer<cl_ulong> keys;       ///< what the camera sees at a batch of samples
     cellist::Buffer<Receiver> receivers;  ///< of a batch of samples: see visible.cl
-    /// Of each texel: what is farther from the light blocks nothing.
+    /// For each texel: what is farther from the light than this blocks nothing.
     cellist::Buffer<cl_float> farthest;
 };
 
@@ -59,7 +62,7 @@ public:
     ShadowTest(const cellist::Device& device, std::string_view pass, const Uses&... uses)
         : kernel_(moving_kernel(device, text_of(pass), "test_samples", uses...)) {}
 
-    /// Marks the samples of a batch that are in shadow, of those whose texel is one of `texels` from
+    /// Marks the samples of a batch that are in shadow, if their texel is one of `texels` from
     /// `first_texel` on. `targets` are the arguments of the pass. Does not block.
     template <class... Targets>
     void run(const Frame& f, const Sampling& batch, std::size_t first_texel, std::size_t texels,
@@ -74,7 +77,7 @@ private:
     cellist::Kernel kernel_;
 };
 
-/// The text of a kernel after what it needs to know of receivers.
+/// The text of a kernel, after keys.clh and receiver.clh.
 [[nodiscard]] std::string with_receivers(std::string_view text);
 
 }  // namespace motion

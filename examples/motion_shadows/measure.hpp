@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -38,7 +37,7 @@ struct Comparison {
     SelfShadowing self_shadowing;
 };
 
-/// What drawing a scene with a method told.
+/// The results of a method in a scene.
 struct Measurement {
     std::string_view method;
     cl_uint samples = 0;  ///< of each pixel; of the reference, its moments

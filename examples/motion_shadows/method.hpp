@@ -2,23 +2,21 @@
 
 #include <cstdint>
 #include <memory>
-#include <string_view>
 
 #include "frame.hpp"
 #include "pass_times.hpp"
 
 namespace motion {
 
-/// What a shadow map holds, and what it takes.
+/// The contents and the memory of a shadow map.
 struct ShadowMapSize {
     std::uint64_t fragments = 0;  ///< of prisms
     std::uint64_t ranges = 0;     ///< before compression
     std::uint64_t unpaired = 0;   ///< fragments that make no range
-    std::uint64_t pieces = 0;     ///< after it
+    std::uint64_t pieces = 0;     ///< ranges after compression
     std::uint64_t bytes = 0;      ///< of device memory
     std::uint64_t slices = 0;     ///< of the last frame; 0 where it was built whole
-    /// Triangles that are not finite.
-    std::uint64_t refused = 0;
+    std::uint64_t refused = 0;    ///< triangles that are not finite
 };
 
 /// A way to compute shadows.
@@ -29,8 +27,8 @@ public:
     ShadowMethod& operator=(const ShadowMethod&) = delete;
     virtual ~ShadowMethod() = default;
 
-    /// Marks the hits of a batch of samples that are in shadow. Makes the shadow map with the first
-    /// batch of a frame.
+    /// Marks the receivers of a batch of samples that are in shadow. Makes the shadow map with the
+    /// first batch of a frame.
     virtual void mark_shadows(Frame& frame, const Sampling& batch, support::PassTimes* times) = 0;
 
     /// Of the last frame. Blocks.

@@ -11,8 +11,7 @@ Renderer::Renderer(const cellist::Device& device, const Scene& scene, const Sett
     : frame_(device, scene, settings),
       sweep_(device, kernels::sweep_camera_cl),
       project_(moving_kernel(device, kernels::project_cl, "project_vertices")),
-      make_receivers_(
-          moving_kernel(device, with_receivers(kernels::visible_cl), "make_receivers")),
+      make_receivers_(moving_kernel(device, with_receivers(kernels::visible_cl), "make_receivers")),
       add_samples_(moving_kernel(device, with_receivers(kernels::shade_cl), "add_samples")),
       finish_(moving_kernel(device, with_receivers(kernels::shade_cl), "finish_picture")),
       sums_(device, frame_.pixels()),
@@ -51,7 +50,8 @@ void Renderer::draw(ShadowMethod& method, support::PassTimes* times) {
     }
     project();
     end("project");
-    frame_.farthest.fill(frame_.settings.prepass ? 0.0F : std::numeric_limits<cl_float>::infinity());
+    frame_.farthest.fill(frame_.settings.prepass ? 0.0F
+                                                 : std::numeric_limits<cl_float>::infinity());
     // The shadow map is for the receivers of all batches.
     const bool is_one_batch = samples <= batch_samples;
     if (frame_.settings.prepass || is_one_batch)

@@ -1,18 +1,10 @@
 #pragma once
 
-#include <cstdint>
-#include <functional>
-#include <memory>
-#include <vector>
-
 #include "frame.hpp"
 #include "method.hpp"
 #include "pass_times.hpp"
 
 namespace motion {
-
-/// Samples of each pixel that are drawn at once; more are drawn in batches.
-constexpr std::size_t batch_samples = 64;
 
 /// Draws a scene with motion blur: several samples of each pixel, each at its own time.
 class Renderer {

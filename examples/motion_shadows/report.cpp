@@ -27,7 +27,7 @@ std::uint64_t tsm_bytes(const Report& report, const Measurement& m) {
 
 bool has_ranges(const Measurement& m) { return m.size.ranges > 0; }
 
-// The passes that make the shadow map: all that no method has in common.
+// The passes that make the shadow map: all but those that every method has.
 double shadow_map_ms(const Measurement& m) {
     constexpr std::array<std::string_view, 4> others{"project", "visible", "test", "shade"};
     double sum = 0;

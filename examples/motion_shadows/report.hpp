@@ -12,7 +12,7 @@
 
 namespace motion {
 
-/// What a run told.
+/// The results of a run.
 struct Report {
     Options options;
     std::string device, driver;

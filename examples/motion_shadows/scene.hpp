@@ -12,8 +12,8 @@
 
 namespace motion {
 
-/// What moves, in metres. Each vertex moves on a straight line, from `begin` at t = 0 to `end` at
-/// t = 1: Hong and Oh, "Depth-time ranges shadow map". The triangles of the ground come first.
+/// A moving scene, in metres. Each vertex moves on a straight line, from `begin` at t = 0 to `end`
+/// at t = 1. The triangles of the ground come first.
 struct Scene {
     std::string name;
     std::vector<glm::vec3> begin, end;  ///< positions of the vertices

@@ -13,7 +13,7 @@ namespace {
 
 using Index = std::uint32_t;
 
-// Numbers the vertices so that those with the same way have the same number: the first of these.
+// For each vertex, the first vertex with the same positions.
 std::vector<Index> welded(const Scene& scene) {
     // Bits have an order even where coordinates are NaN. -0 + 0 is 0.
     const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x + 0.0F); };
@@ -29,11 +29,12 @@ std::vector<Index> welded(const Scene& scene) {
     });
     std::vector<Index> first(order.size());
     for (std::size_t k = 0; k < order.size(); ++k)
-        first[order[k]] = k > 0 && way(order[k]) == way(order[k - 1]) ? first[order[k - 1]] : order[k];
+        first[order[k]] =
+            k > 0 && way(order[k]) == way(order[k - 1]) ? first[order[k - 1]] : order[k];
     return first;
 }
 
-// Joins sets of vertices.
+// Disjoint sets of vertices.
 class Sets {
 public:
     explicit Sets(std::size_t size) : parent_(size) {
@@ -49,7 +50,7 @@ private:
     std::vector<Index> parent_;
 };
 
-// The vertices from which surfaces are connected that have an edge without its opposite.
+// Whether the set that a vertex represents has an edge without its opposite.
 std::vector<bool> open_surfaces(const std::vector<glm::uvec3>& triangles, Sets& sets,
                                 std::size_t vertices) {
     struct Edge {

@@ -1,6 +1,5 @@
 // A shadow map of the middle of the exposure.
 #include "method.hpp"
-
 #include "motion_kernels.hpp"
 
 namespace motion {

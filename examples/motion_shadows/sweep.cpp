@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
+#include <string>
 #include <vector>
 
 #include "input_error.hpp"
@@ -15,7 +15,7 @@ namespace {
 // Triangles that sweep over many pixels are divided while there is room for these tiles.
 constexpr std::size_t tiles_max = 1 << 20;
 
-// Hits keep a bit for themselves.
+// Receivers keep the highest bit of a triangle's number for RECEIVER_BLOCKED.
 constexpr std::size_t triangles_max = 0x7FFFFFFE;
 
 std::vector<cl_float> floats_of(const std::vector<glm::vec3>& points) {
@@ -27,8 +27,9 @@ std::vector<cl_float> floats_of(const std::vector<glm::vec3>& points) {
 
 std::vector<cl_uint> indices_of(const Scene& scene) {
     if (scene.begin.size() != scene.end.size() || scene.colours.size() != scene.triangles.size())
-        throw support::InputError("a moving scene needs both positions of each vertex, and a "
-                                  "colour of each triangle");
+        throw support::InputError(
+            "a moving scene needs both positions of each vertex, and a "
+            "colour of each triangle");
     if (scene.triangles.size() > triangles_max)
         throw support::InputError("a moving scene of " + std::to_string(scene.triangles.size()) +
                                   " triangles: expected at most " + std::to_string(triangles_max));
@@ -36,8 +37,9 @@ std::vector<cl_uint> indices_of(const Scene& scene) {
     indices.reserve(3 * scene.triangles.size());
     for (const glm::uvec3& t : scene.triangles) {
         if (std::max({t.x, t.y, t.z}) >= scene.begin.size())
-            throw support::InputError("a triangle of a moving scene has a vertex that does not "
-                                      "exist");
+            throw support::InputError(
+                "a triangle of a moving scene has a vertex that does not "
+                "exist");
         indices.insert(indices.end(), {t.x, t.y, t.z});
     }
     return indices;

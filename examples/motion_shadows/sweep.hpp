@@ -11,7 +11,7 @@
 
 namespace motion {
 
-/// The text of a kernel after what all kernels of this program need.
+/// The text of a kernel, after lists.clh and moving.clh.
 [[nodiscard]] std::string with_moving(std::string_view text);
 
 /// A kernel that works with moving triangles. `uses` as in cellist::Kernel.
@@ -24,23 +24,23 @@ template <class... Uses>
                            cellist::type<Shading>, cellist::type<Receiver>, uses...);
 }
 
-/// The triangles of a scene on the device, and what sweeping over them needs.
+/// The triangles of a scene on the device, and the queue of tiles of a sweep.
 struct SceneBuffers {
     SceneBuffers(const cellist::Device& device, const Scene& scene);
 
     cl_uint vertex_count, triangle_count;
-    cellist::Buffer<cl_float> begin, end;   ///< 3 a vertex
-    cellist::Buffer<cl_uint> indices;       ///< 3 a triangle
-    cellist::Buffer<cl_float4> albedos;     ///< of the triangles: linear RGB, and 1
+    cellist::Buffer<cl_float> begin, end;  ///< 3 a vertex
+    cellist::Buffer<cl_uint> indices;      ///< 3 a triangle
+    cellist::Buffer<cl_float4> albedos;    ///< of the triangles: linear RGB, and 1
     cellist::Buffer<SweepTile> tiles;
     cellist::Buffer<cl_uint> tile_count;
     cellist::Range tiles_range;
 };
 
-/// The key of a pixel where sweep_still.cl finds nothing. Its depth is NaN.
+/// NO_KEY of keys.clh.
 constexpr cl_ulong no_key = 0x7FFFFFFFFFFFFFFF;
 
-/// A view of the scene.
+/// The scene as the camera or the light sees it.
 struct SeenScene {
     /// With `insides`, also those sides of closed surfaces that never show: see seen_sides().
     SeenScene(const cellist::Device& device, const Scene& scene, const View& its_view,
@@ -65,15 +65,14 @@ public:
         const auto room = static_cast<cl_uint>(scene.tiles.size());
         scene.tile_count.fill(0);
         sweep_.run(cellist::Range::padded(scene.triangle_count, 64), targets..., seen.view,
-                   seen.vertices, scene.indices, seen.sides, scene.triangle_count, scene.tiles, room,
-                   scene.tile_count);
+                   seen.vertices, scene.indices, seen.sides, scene.triangle_count, scene.tiles,
+                   room, scene.tile_count);
         sweep_tiles_.run(scene.tiles_range, targets..., seen.view, seen.vertices, scene.indices,
                          seen.sides, scene.tiles, room, scene.tile_count);
     }
 
 private:
-    [[nodiscard]] static std::string text_of(const cellist::Device& device,
-                                             std::string_view pass);
+    [[nodiscard]] static std::string text_of(const cellist::Device& device, std::string_view pass);
     cellist::Kernel sweep_;
     cellist::Kernel sweep_tiles_;
 };

@@ -1,10 +1,8 @@
 // Time-dependent shadow maps: a depth for each sample of a texel, at the sample's own time.
-#include "method.hpp"
-
 #include <algorithm>
 
+#include "method.hpp"
 #include "motion_kernels.hpp"
-#include "renderer.hpp"
 
 namespace motion {
 namespace {
@@ -41,8 +39,6 @@ private:
 
 }  // namespace
 
-std::unique_ptr<ShadowMethod> make_tsm(const Frame& frame) {
-    return std::make_unique<Tsm>(frame);
-}
+std::unique_ptr<ShadowMethod> make_tsm(const Frame& frame) { return std::make_unique<Tsm>(frame); }
 
 }  // namespace motion

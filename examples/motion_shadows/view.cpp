@@ -26,8 +26,7 @@ View view_of(const raster::View& from, const glm::dvec3& eye, const glm::dvec3& 
     view.row_x = in_pixels(from.row_x);
     view.row_y = in_pixels(from.row_y);
     view.row_w = {{from.row_w[0], from.row_w[1], from.row_w[2], from.row_w[3]}};
-    view.row_depth =
-        is_parallel ? float4(glm::dvec4(axis, -glm::dot(axis, eye))) : view.row_w;
+    view.row_depth = is_parallel ? float4(glm::dvec4(axis, -glm::dot(axis, eye))) : view.row_w;
     view.near_depth = is_parallel ? 0.0F : from.near_depth;
     const glm::dvec3 x(view.row_x.s[0], view.row_x.s[1], view.row_x.s[2]);
     view.pixel = static_cast<cl_float>(1 / glm::length(x - glm::dot(x, axis) * axis));
