@@ -19,7 +19,6 @@ Accumulation::Accumulation(Frame& frame)
     : frame_(frame),
       sweep_(frame.device, kernels::sweep_still_cl),
       add_moment_(moving_kernel(frame.device, with_receivers(kernels::shade_cl), "add_moment")),
-      project_(moving_kernel(frame.device, kernels::project_cl, "project_vertices")),
       finish_(moving_kernel(frame.device, with_receivers(kernels::shade_cl), "finish_picture")),
       seen_(frame.device, frame.pixels()),
       lit_(frame.device, frame.texels()),
@@ -30,9 +29,7 @@ void Accumulation::draw(cl_uint first, cl_uint count, cl_uint moments) {
     SceneBuffers& scene = frame_.scene;
     if (first == 0) {
         sums_.fill(cl_float4{{0, 0, 0, 0}});
-        for (const SeenScene* seen : {&frame_.camera, &frame_.light})
-            project_.run(cellist::Range::padded(scene.vertex_count, 64), seen->view, scene.begin,
-                         scene.end, scene.vertex_count, seen->vertices);
+        frame_.project();
     }
     for (cl_uint moment = first; moment < first + count; ++moment) {
         const auto time = static_cast<cl_float>((moment + 0.5) / moments);

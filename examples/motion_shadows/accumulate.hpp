@@ -22,7 +22,6 @@ private:
     Frame& frame_;
     Sweep sweep_;
     cellist::Kernel add_moment_;
-    cellist::Kernel project_;
     cellist::Kernel finish_;
     cellist::Buffer<cl_ulong> seen_, lit_;
     cellist::Buffer<cl_float4> sums_, picture_;

@@ -43,7 +43,14 @@ Frame::Frame(const cellist::Device& its_device, const Scene& its_scene, const Se
       keys(device, pixels() * std::clamp<std::size_t>(s.samples, 1, batch_samples)),
       receivers(device, pixels() * std::clamp<std::size_t>(s.samples, 1, batch_samples)),
       farthest(device,
-               static_cast<std::size_t>(s.shadow_map) * static_cast<std::size_t>(s.shadow_map)) {}
+               static_cast<std::size_t>(s.shadow_map) * static_cast<std::size_t>(s.shadow_map)),
+      project_vertices(moving_kernel(device, kernels::project_cl, "project_vertices")) {}
+
+void Frame::project() {
+    for (const SeenScene* seen : {&camera, &light})
+        project_vertices.run(cellist::Range::padded(scene.vertex_count, 64), seen->view,
+                             scene.begin, scene.end, scene.vertex_count, seen->vertices);
+}
 
 std::size_t Frame::pixels() const {
     return static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height);

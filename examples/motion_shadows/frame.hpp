@@ -40,6 +40,9 @@ struct Settings {
 struct Frame {
     Frame(const cellist::Device& device, const Scene& scene, const Settings& settings);
 
+    /// Projects the vertices into both views. Does not block.
+    void project();
+
     [[nodiscard]] std::size_t pixels() const;
     [[nodiscard]] cellist::Storage storage() const;
     [[nodiscard]] std::size_t texels() const { return farthest.size(); }
@@ -53,6 +56,7 @@ struct Frame {
     cellist::Buffer<Receiver> receivers;  ///< of a batch of samples: see visible.cl
     /// For each texel: what is farther from the light than this blocks nothing.
     cellist::Buffer<cl_float> farthest;
+    cellist::Kernel project_vertices;
 };
 
 /// The shadow test of a method: `pass` is its text, see test.clh.

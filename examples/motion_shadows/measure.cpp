@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "accumulate.hpp"
+#include "input_error.hpp"
 #include "progress.hpp"
 #include "stopwatch.hpp"
 
@@ -35,11 +36,27 @@ Measurement draw_reference(const cellist::Device& device, const Scene& scene,
     return result;
 }
 
+// Names the option where the lists of a shadow map do not fit into --memory at all.
+std::unique_ptr<ShadowMethod> make_method(const NamedMethod& named, Renderer& renderer) {
+    const Settings& settings = renderer.frame().settings;
+    try {
+        std::unique_ptr<ShadowMethod> method = named.make(renderer.frame());
+        renderer.draw(*method);
+        return method;
+    } catch (const cellist::MemoryError&) {
+        if (settings.budget_bytes == no_budget) throw;
+        throw support::InputError("--memory " + std::to_string(settings.budget_bytes) +
+                                  " is too little for a shadow map of " +
+                                  std::to_string(settings.shadow_map) + " x " +
+                                  std::to_string(settings.shadow_map) + " texels: raise it");
+    }
+}
+
 Measurement draw_with(const NamedMethod& named, Renderer& renderer, const Options& options) {
     const cellist::Device& device = renderer.frame().device;
-    const std::unique_ptr<ShadowMethod> method = named.make(renderer.frame());
+    const std::unique_ptr<ShadowMethod> method = make_method(named, renderer);
     Measurement result{.method = named.name, .samples = renderer.frame().settings.samples};
-    for (int frame = 0; frame < warm_up_frames; ++frame) renderer.draw(*method);
+    for (int frame = 1; frame < warm_up_frames; ++frame) renderer.draw(*method);
     for (std::uint32_t frame = 0; frame < options.frames; ++frame)
         result.frames_ms.push_back(support::measure_ms(device, [&] { renderer.draw(*method); }));
     result.passes_ms =

@@ -10,7 +10,6 @@ namespace motion {
 Renderer::Renderer(const cellist::Device& device, const Scene& scene, const Settings& settings)
     : frame_(device, scene, settings),
       sweep_(device, kernels::sweep_camera_cl),
-      project_(moving_kernel(device, kernels::project_cl, "project_vertices")),
       make_receivers_(moving_kernel(device, with_receivers(kernels::visible_cl), "make_receivers")),
       add_samples_(moving_kernel(device, with_receivers(kernels::shade_cl), "add_samples")),
       finish_(moving_kernel(device, with_receivers(kernels::shade_cl), "finish_picture")),
@@ -20,13 +19,6 @@ Renderer::Renderer(const cellist::Device& device, const Scene& scene, const Sett
 Sampling Renderer::batch(cl_uint first) const {
     const cl_uint samples = frame_.settings.samples;
     return {samples, first, std::min<cl_uint>(samples - first, batch_samples)};
-}
-
-void Renderer::project() {
-    const SceneBuffers& scene = frame_.scene;
-    for (const SeenScene* seen : {&frame_.camera, &frame_.light})
-        project_.run(cellist::Range::padded(scene.vertex_count, 64), seen->view, scene.begin,
-                     scene.end, scene.vertex_count, seen->vertices);
 }
 
 void Renderer::find_visible(const Sampling& batch) {
@@ -48,7 +40,7 @@ void Renderer::draw(ShadowMethod& method, support::PassTimes* times) {
         picture_.fill(cl_float4{{0, 0, 0, 0}});
         return;
     }
-    project();
+    frame_.project();
     end("project");
     frame_.farthest.fill(frame_.settings.prepass ? 0.0F
                                                  : std::numeric_limits<cl_float>::infinity());

@@ -20,12 +20,10 @@ public:
 
 private:
     [[nodiscard]] Sampling batch(cl_uint first) const;
-    void project();
     void find_visible(const Sampling& batch);
 
     Frame frame_;
     Sweep sweep_;
-    cellist::Kernel project_;
     cellist::Kernel make_receivers_;
     cellist::Kernel add_samples_;
     cellist::Kernel finish_;

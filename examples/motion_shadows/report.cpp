@@ -85,7 +85,7 @@ void print_one(std::ostream& out, const Report& report, const Measurement& m) {
                   << fixed(m.comparison->picture.ssim, 4) << '\n';
     line("acne") << grouped(m.comparison->self_shadowing.self_shadowed) << " of "
                  << counted(m.comparison->self_shadowing.lit, "lit pixel")
-                 << " shadowed by their own surface\n";
+                 << " darker than chance allows\n";
 }
 
 // ---- several methods
@@ -143,7 +143,7 @@ void print_table(std::ostream& out, const Report& report) {
     const auto compared = std::ranges::find_if(
         report.measurements, [](const Measurement& m) { return m.comparison.has_value(); });
     if (compared != report.measurements.end())
-        out << "acne: pixels shadowed by their own surface, of "
+        out << "acne: pixels darker than chance allows, of "
             << grouped(compared->comparison->self_shadowing.lit) << " that should be lit.\n";
 }
 
