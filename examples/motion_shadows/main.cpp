@@ -53,8 +53,9 @@ void write_pictures(const Report& report, std::ostream& screen) {
         if (!options.out_shadow.empty())
             write(path_for(options.out_shadow, options, m), shadow_picture(m.picture));
         if (options.out_difference.empty() || !m.comparison) continue;
-        support::write_difference(path_for(options.out_difference, options, m), m.picture,
-                                  reference->picture, width, height);
+        const std::filesystem::path difference = path_for(options.out_difference, options, m);
+        support::write_difference(difference, m.picture, reference->picture, width, height);
+        screen << "written " << support::text_of(difference) << '\n';
     }
 }
 
@@ -72,10 +73,14 @@ bool run(const Options& options) {
     report.paper = motion::paper_size(device, scene, options);
     print(screen, report);
     write_pictures(report, screen);
-    if (!options.json.empty())
-        support::write_file(options.json, support::dump(to_json(report), 2) + '\n');
-    if (!options.html.empty()) support::write_file(options.html, to_html(report));
-    if (!options.csv.empty()) support::write_file(options.csv, to_csv(report));
+    const auto write = [&](const std::filesystem::path& path, const auto& text) {
+        if (path.empty()) return;
+        support::write_file(path, text());
+        screen << "written " << support::text_of(path) << '\n';
+    };
+    write(options.json, [&] { return support::dump(to_json(report), 2) + '\n'; });
+    write(options.html, [&] { return to_html(report); });
+    write(options.csv, [&] { return to_csv(report); });
     if (options.arguments.empty())
         screen << "next: --method all compares methods, --reference measures their errors; walker, "
                   "fan, blinds\nand mesh files are other scenes\n";
