@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 
+#include "oit/support/json_keys.hpp"
 #include "oit/support/program.hpp"
 #include "support/catch.hpp"
 
@@ -11,20 +12,6 @@ namespace cellist::test {
 namespace {
 
 using nlohmann::ordered_json;
-
-void add_keys(const ordered_json& value, std::set<std::string>& keys) {
-    if (value.is_object())
-        for (const auto& [key, member] : value.items()) {
-            keys.insert(key);
-            add_keys(member, keys);
-        }
-    else if (value.is_array())
-        for (const ordered_json& member : value) add_keys(member, keys);
-}
-
-ordered_json json_in(const Program& program, const char* name) {
-    return ordered_json::parse(read_file(program.folder() / name));
-}
 
 const std::string small = "--width 48 --height 36 --shadow-map 128 --frames 1 ";
 

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "json_report.hpp"
+#include "oit/support/json_keys.hpp"
 #include "oit/support/program.hpp"
 #include "support/catch.hpp"
 #include "support/device.hpp"
@@ -16,20 +17,6 @@ namespace cellist::test {
 namespace {
 
 using nlohmann::ordered_json;
-
-void add_keys(const ordered_json& value, std::set<std::string>& keys) {
-    if (value.is_object())
-        for (const auto& [key, member] : value.items()) {
-            keys.insert(key);
-            add_keys(member, keys);
-        }
-    else if (value.is_array())
-        for (const ordered_json& member : value) add_keys(member, keys);
-}
-
-ordered_json json_in(const Program& program, const char* name) {
-    return ordered_json::parse(read_file(program.folder() / name));
-}
 
 TEST_CASE("a run writes its pictures and a report whose keys the document has") {
     const Program program(CELLIST_SHADOWS_PROGRAM);
@@ -119,7 +106,8 @@ TEST_CASE("any mesh stands in the room") {
 TEST_CASE("a picture that exceeds the memory of the device is refused in one line") {
     // It takes more than 64 GB. This case comes last: a device may serve one process only, and this
     // one opens it.
-    if (device().info().global_memory_bytes > 64'000'000'000) CELLIST_SKIP("the device can hold it");
+    if (device().info().global_memory_bytes > 64'000'000'000)
+        CELLIST_SKIP("the device can hold it");
     Program(CELLIST_SHADOWS_PROGRAM).require_refused("--width 16384 --height 16384", "limit");
 }
 

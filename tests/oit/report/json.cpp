@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "json_report.hpp"
+#include "oit/support/json_keys.hpp"
 #include "oit/support/program.hpp"
 #include "options.hpp"
 #include "report/report.hpp"
@@ -169,16 +170,6 @@ TEST_CASE("both programs have the same head") {
         CHECK(a.contains(key));
         CHECK(setting.contains(key));
     }
-}
-
-void add_keys(const ordered_json& value, std::set<std::string>& keys) {
-    if (value.is_object())
-        for (const auto& [key, member] : value.items()) {
-            keys.insert(key);
-            add_keys(member, keys);
-        }
-    else if (value.is_array())
-        for (const ordered_json& member : value) add_keys(member, keys);
 }
 
 TEST_CASE("the document has all keys") {
