@@ -23,6 +23,10 @@ namespace {
 using support::InputError;
 using support::refuse;
 
+// Of --lens.
+constexpr double lens_radius_max = 100;
+constexpr double lens_focus_min = 1e-6;
+
 // The whole text as a number, or nothing.
 template <class T>
 std::optional<T> parse(std::string_view text) {
@@ -65,10 +69,38 @@ void read_view(const std::string& text, FrameOptions& options) {
 }
 
 void read_samples(const std::string& text, FrameOptions& options) {
+    if (text == "exact") {
+        options.quality.samples = 1;
+        options.quality.coverage = Coverage::exact;
+        return;
+    }
     const auto samples = parse<int>(text);
     if (!samples || (*samples != 1 && *samples != 2 && *samples != 4 && *samples != 8))
-        refuse("--samples", text, "1, 2, 4 or 8");
+        refuse("--samples", text, "1, 2, 4, 8 or exact");
     options.quality.samples = *samples;
+    options.quality.coverage = Coverage::samples;
+}
+
+void read_lens(const std::string& text, FrameOptions& options) {
+    if (text.empty()) return;
+    const std::size_t comma = text.find(',');
+    const auto radius = parse<double>(std::string_view(text).substr(0, comma));
+    const auto focus = comma == std::string::npos
+                           ? std::nullopt
+                           : parse<double>(std::string_view(text).substr(comma + 1));
+    if (!radius || !focus || std::isnan(*focus))
+        refuse("--lens", text, "RADIUS,FOCUS, such as 0.1,4 or 0.1,inf");
+    if (!(*radius >= 0 && *radius <= lens_radius_max))
+        throw InputError("--lens " + text + ": the radius must be from 0 to " +
+                         support::shortest(lens_radius_max) + "; the scene has radius 1");
+    if (!(std::abs(*focus) >= lens_focus_min))
+        throw InputError("--lens " + text + ": the focus must be at least " +
+                         support::shortest(lens_focus_min) + " from the eye");
+    options.lens = Lens{*radius, *focus};
+}
+
+std::string lens_text(const std::optional<Lens>& lens) {
+    return lens ? support::shortest(lens->radius) + "," + support::shortest(lens->focus) : "";
 }
 
 void read_resolve(const std::string& text, FrameOptions& options) {
@@ -203,8 +235,15 @@ void check_scene(const FrameOptions& options) {
 
 void refuse_idle_options(const support::CommandLine& line, const FrameOptions& options) {
     const bool one_sample = options.quality.samples == 1;
+    const bool is_exact = options.quality.coverage == Coverage::exact;
     const SceneInfo* scene = find_scene(options.scene);
     const support::IdleOption idle[] = {
+        {"--lens", is_exact || !one_sample,
+         "--lens draws one sample per pixel: leave out --samples"},
+        {"--depth-range", is_exact,
+         "--depth-range is for samples, and --samples exact has none: leave one of them out"},
+        {"--resolve", is_exact,
+         "--resolve is for samples, and --samples exact has none: leave one of them out"},
         {"--depth-range", one_sample,
          "--depth-range needs several samples: add --samples 2, 4 or 8"},
         {"--alpha", scene != nullptr && !scene->takes_alpha,
@@ -278,8 +317,8 @@ void add_frame_options(support::CommandLine& line, FrameOptions& options) {
              "function",
              "KIND|FILE", [&](Text text) { read_blend(text, options); });
     line.add("--samples", std::to_string(options.quality.samples),
-             "samples per pixel: 1, 2, 4 or 8", "N",
-             [&](Text text) { read_samples(text, options); });
+             "samples per pixel: 1, 2, 4 or 8; or exact, for the area that each triangle covers",
+             "N|exact", [&](Text text) { read_samples(text, options); });
     line.add("--resolve", options.quality.resolve == Resolve::per_pixel ? "pixel" : "sample",
              "where samples are blended: pixel or sample", "WHERE",
              [&](Text text) { read_resolve(text, options); });
@@ -299,6 +338,9 @@ void add_frame_options(support::CommandLine& line, FrameOptions& options) {
                  options.eye_separation =
                      support::read_between("--stereo", text, 0, 1, "a distance from 0 to 1");
              });
+    line.add("--lens", lens_text(options.lens),
+             "depth of field: radius of the aperture, and depth in focus; the scene has radius 1",
+             "RADIUS,FOCUS", [&](Text text) { read_lens(text, options); });
     line.add("--time", support::shortest(options.time), "time of an animated scene, in seconds",
              "T", [&](Text text) {
                  options.time = support::read_between("--time", text, -1e6, 1e6,
@@ -381,7 +423,8 @@ Frame make_frame(const Scene& scene, const FrameOptions& options) {
             .views = make_views(options),
             .time = options.time,
             .quality = options.quality,
-            .blend_function = options.blend_function};
+            .blend_function = options.blend_function,
+            .lens = options.lens};
 }
 
 }  // namespace oit

@@ -32,6 +32,7 @@ struct FrameOptions {
     std::optional<double> eye_separation = {};  ///< for two eyes
     double time = 0;                            ///< of the scene, in seconds
     bool opaque_floor = false;
+    std::optional<Lens> lens = {};
     std::optional<support::UpAxis> up = {};  ///< of mesh files; else what each file says, or y
     Quality quality = {};
     std::optional<Blend> blend = {};  ///< of all transparent surfaces; else the scene decides

@@ -16,10 +16,10 @@
 #include "image_difference.hpp"
 #include "json_report.hpp"
 #include "methods/renderer.hpp"
+#include "methods/view_mean.hpp"
 #include "options.hpp"
 #include "progress.hpp"
 #include "reference/comparison.hpp"
-#include "reference/reference.hpp"
 #include "report/picture.hpp"
 #include "report/report.hpp"
 #include "stopwatch.hpp"
@@ -93,9 +93,9 @@ oit::PassTimes draw_passes(oit::Renderer& renderer, std::uint32_t count) {
     return median_times(passes);
 }
 
-oit::Reference reference_of(const oit::Frame& frame) {
+oit::Reference reference_of(const cellist::Device& device, const oit::Frame& frame) {
     support::Progress progress("reference");
-    return oit::draw_reference(frame, {.progress = [&](double part) { progress.update(part); }});
+    return oit::reference_of(device, frame, [&](double part) { progress.update(part); });
 }
 
 void write_reference(const oit::Options& options, const oit::Frame& frame,
@@ -110,16 +110,19 @@ void write_reference(const oit::Options& options, const oit::Frame& frame,
 }
 
 // With all layers; and with as many as were asked for, which tells what the device makes of these.
-void compare_with_references(oit::Report& report, const oit::Frame& frame,
-                             const oit::Renderer& renderer, const std::vector<cl_float4>& image) {
+// Pictures through a lens have no reference of the nearest layers.
+void compare_with_references(oit::Report& report, const cellist::Device& device,
+                             const oit::Frame& frame, const oit::Renderer& renderer,
+                             const std::vector<cl_float4>& image) {
     oit::Frame all = frame;
     all.quality.layers.reset();
-    const oit::Reference reference = reference_of(all);
+    const oit::Reference reference = reference_of(device, all);
+    report.reference_views = oit::reference_views(frame);
     report.comparison = oit::compare(reference, image, renderer.method().depths());
     write_reference(report.options, frame, image, reference);
-    if (frame.quality.layers)
+    if (frame.quality.layers && !frame.lens)
         report.nearest_comparison =
-            oit::compare(reference_of(frame), image, renderer.method().depths());
+            oit::compare(reference_of(device, frame), image, renderer.method().depths());
 }
 
 void draw_with_method(oit::Report& report, oit::Renderer& renderer, oit::Frame& frame) {
@@ -151,7 +154,8 @@ void describe(oit::Report& report, const oit::Scene& scene, const cellist::Devic
     for (const oit::SceneMesh& mesh : scene.meshes) report.drops += mesh.drops;
 }
 
-void write(oit::Report& report, const oit::Frame& frame, const oit::Renderer& renderer) {
+void write(oit::Report& report, const cellist::Device& device, const oit::Frame& frame,
+           const oit::Renderer& renderer) {
     const oit::Options& options = report.options;
     if (oit::method_named(options.method).has_nodes)
         report.node_bytes = 4 * renderer.layout().words;
@@ -164,7 +168,7 @@ void write(oit::Report& report, const oit::Frame& frame, const oit::Renderer& re
     report.slices = renderer.method().slices();
     report.method_bytes = renderer.method().device_bytes();
     report.device_bytes = renderer.device_bytes();
-    if (options.reference) compare_with_references(report, frame, renderer, image);
+    if (options.reference) compare_with_references(report, device, frame, renderer, image);
     report.peak_bytes = peak_bytes();
     if (!options.json.empty())
         support::write_file(options.json, support::dump(to_json(report), 2) + '\n');
@@ -186,7 +190,7 @@ int run(const oit::Options& options) {
     if (!options.budget) {
         oit::Renderer renderer(device, frame, oit::method_named(options.method));
         draw_with_method(report, renderer, frame);
-        write(report, frame, renderer);
+        write(report, device, frame, renderer);
         return 0;
     }
     set_moment(frame, options, 0, options.frames);
@@ -201,7 +205,7 @@ int run(const oit::Options& options) {
         {.progress = show_choosing, .seconds = options.search_seconds});
     draw_within_budget(report, controller, frame);
     // `frame` keeps its own quality, so the reference has all layers.
-    write(report, frame, controller.renderer());
+    write(report, device, frame, controller.renderer());
     return report.record.met() ? 0 : 2;
 }
 

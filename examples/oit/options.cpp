@@ -48,8 +48,6 @@ void read_format(const std::string& text, Options& options) {
 void read_reduce(const std::string& text, Options& options) {
     if (text != "1" && text != "2" && text != "4") refuse("--reduce", text, "1, 2 or 4");
     options.quality.reduce = text.front() - '0';
-    if (options.quality.reduce > 1 && options.quality.samples > 1)
-        throw support::InputError("--reduce draws one sample per pixel: leave out --samples");
 }
 
 void check_outputs(const Options& options) {
@@ -68,6 +66,7 @@ void check_outputs(const Options& options) {
 void refuse_idle_options(const support::CommandLine& line, const Options& options) {
     const bool has_budget = options.budget.has_value(), one_frame = options.frames == 1;
     const bool has_nodes = method_named(options.method).has_nodes;
+    const bool is_exact = options.quality.coverage == Coverage::exact;
     const auto idle_if = [](bool idle, const std::string& before, const char* name,
                             const char* after) {
         std::string reason = before;
@@ -101,6 +100,19 @@ void refuse_idle_options(const support::CommandLine& line, const Options& option
         not_compared("--memory"),
         {"--blend", has_budget && options.blend_function,
          "--budget has no error bound for a function of your own: leave one of them out"},
+        {"--reduce", options.quality.reduce > 1 && (options.quality.samples > 1 || is_exact),
+         "--reduce draws one sample per pixel: leave out --samples"},
+        {"--reduce", options.quality.reduce > 1 && options.lens.has_value(),
+         "--reduce has no layers for --lens: leave one of them out"},
+        {"--memory", options.lens.has_value(),
+         "--memory draws slices, and --lens needs all layers at once: leave one of them out"},
+        {"--layers", is_exact && options.quality.layers.has_value(),
+         "--samples exact blends all triangles of a pixel: leave out --layers"},
+        {"--lens-rays", !options.lens, "--lens-rays is for --lens, which is not given"},
+        {"--budget", options.lens.has_value(),
+         "--budget has no error bound for --lens: leave one of them out"},
+        {"--budget", is_exact,
+         "--budget has no error bound for --samples exact: leave one of them out"},
         of_budget("--check-every"),
         of_budget("--search-seconds"),
         of_budget("--strict"),
@@ -131,6 +143,8 @@ void add_quality_options(support::CommandLine& line, Options& options) {
     line.add("--reduce", std::to_string(options.quality.reduce),
              "draw transparent surfaces with 1/N of the width and height, and enlarge them", "N",
              [&](Text text) { read_reduce(text, options); });
+    line.add_number("--lens-rays", options.quality.lens_rays, 1, 4096,
+                    "rays per pixel through the lens");
     line.add("--memory", "",
              "limit on the device memory of the method, such as 64MiB; lists are drawn in slices",
              "BYTES",

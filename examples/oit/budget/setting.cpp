@@ -30,7 +30,11 @@ std::string text(const Setting& setting) {
     if (quality.epsilon > 0) out << " --epsilon " << quality.epsilon;
     if (quality.format != usual.format) out << " --format " << name_of(quality.format);
     if (quality.depth_scale != usual.depth_scale) out << " --depth-scale reversed";
-    if (quality.samples != usual.samples) out << " --samples " << quality.samples;
+    if (quality.coverage == Coverage::exact)
+        out << " --samples exact";
+    else if (quality.samples != usual.samples)
+        out << " --samples " << quality.samples;
+    if (quality.lens_rays != usual.lens_rays) out << " --lens-rays " << quality.lens_rays;
     if (quality.resolve != usual.resolve) out << " --resolve sample";
     if (quality.depth_range) out << " --depth-range";
     return out.str();

@@ -44,10 +44,13 @@ std::vector<raster::Placed> placed_at(const Scene& scene, double time) {
     return placed;
 }
 
-std::vector<std::size_t> chosen(const Scene& scene, bool opaque) {
+// The instances of surfaces that are drawn first, or of those whose fragments are stored.
+std::vector<std::size_t> chosen(const Frame& frame, bool drawn_first) {
+    const Scene& scene = frame.scene;
     std::vector<std::size_t> instances;
     for (std::size_t i = 0; i < scene.instances.size(); ++i)
-        if (scene.is_opaque(scene.instances[i]) == opaque) instances.push_back(i);
+        if ((scene.is_opaque(scene.instances[i]) && !frame.stores_opaque()) == drawn_first)
+            instances.push_back(i);
     return instances;
 }
 
@@ -101,7 +104,7 @@ bool resolves_samples(const Quality& quality) {
 }  // namespace
 
 FragmentSource::Opaque::Passes::Passes(const FragmentSource& source)
-    : triangles(source.device_, source.projection_, chosen(source.frame_.scene, true)),
+    : triangles(source.device_, source.projection_, chosen(source.frame_, true)),
       depth(source.opaque_pass(kernels::opaque_depth_cl, "opaque_depth.cl")),
       owner(source.opaque_pass(kernels::opaque_owner_cl, "opaque_owner.cl")),
       colour(source.opaque_pass(kernels::opaque_colour_cl, "opaque_colour.cl")),
@@ -123,7 +126,7 @@ FragmentSource::FragmentSource(const cellist::Device& device, const Frame& frame
       setup_(device, sampling()),
       geometry_(device, meshes_of(frame.scene)),
       projection_(device, setup_, geometry_, placed_at(frame.scene, frame.time), frame.views),
-      transparent_(device, projection_, chosen(frame.scene, false)),
+      transparent_(device, projection_, chosen(frame, false)),
       materials_(device, frame.scene.materials),
       opacities_(device,
                  features_.opacities ? opacities_of(frame.scene) : std::vector<cl_float>(1)),

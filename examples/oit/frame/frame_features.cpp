@@ -75,20 +75,22 @@ FrameFeatures features_of(const Frame& frame) {
     bool first = true;
     for (const Instance& instance : scene.instances) {
         features.tints = features.tints || !scene.models.at(instance.model).tints.empty();
-        if (scene.is_opaque(instance)) {
+        const bool is_opaque = scene.is_opaque(instance);
+        if (is_opaque && !frame.stores_opaque()) {
             features.opaque = true;
             continue;
         }
+        features.stores_opaque = features.stores_opaque || is_opaque;
         const Material& material = scene.material_of(instance);
-        const auto blend = static_cast<Blend>(material.blend);
-        features.blends |= 1U << material.blend;
-        features.opacities =
-            features.opacities || !scene.models.at(instance.model).opacities.empty();
+        const auto blend = is_opaque ? Blend::over : static_cast<Blend>(material.blend);
+        const float alpha = is_opaque ? 1 : material.alpha;
+        features.blends |= 1U << static_cast<std::uint32_t>(blend);
+        features.opacities = features.opacities ||
+                             (!is_opaque && !scene.models.at(instance.model).opacities.empty());
         features.has_highlights =
             features.has_highlights || (blend == Blend::absorb && material.gloss > 0);
-        features.alpha_varies =
-            features.alpha_varies || (!first && material.alpha != features.alpha);
-        features.alpha = material.alpha;
+        features.alpha_varies = features.alpha_varies || (!first && alpha != features.alpha);
+        features.alpha = alpha;
         first = false;
         features.colour_max = std::max(features.colour_max, brightest(material, scene.lighting));
         for (const raster::View& view : frame.views)
@@ -132,6 +134,7 @@ std::string defines_of(const Frame& frame, const FrameFeatures& features) {
     text += define("OIT_SAMPLES", quality.samples);
     text += define("OIT_STATE_FLOATS", state_floats(quality, features));
     if (features.opaque) text += "#define OIT_HAS_OPAQUE\n";
+    if (features.stores_opaque) text += "#define OIT_STORES_OPAQUE\n";
     if (features.opacities) text += "#define OIT_HAS_OPACITIES\n";
     if (features.tints) text += "#define OIT_HAS_TINTS\n";
     if (features.has(Blend::absorb)) text += "#define OIT_ABSORBS\n";

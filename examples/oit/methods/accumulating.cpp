@@ -14,7 +14,7 @@ std::string accumulating_refusal(const Frame& frame, const FrameFeatures& featur
         return "it supports only surfaces that cover what is behind them";
     if (frame.quality.depth_range) return "it has no depth for each sample";
     if (frame.quality.layers) return "it blends all layers at once";
-    return {};
+    return needs_all_fragments(frame);
 }
 
 void require_wide_sums(const cellist::Device& device) {

@@ -26,6 +26,7 @@ std::unique_ptr<Method> make_kbuffer(FragmentSource& source) {
 
 std::string kbuffer_refusal(const Frame& frame, const FrameFeatures&) {
     const Quality& quality = frame.quality;
+    if (quality.coverage == Coverage::exact) return needs_all_fragments(frame);
     if (!quality.size || !quality.layers || *quality.layers <= *quality.size) return {};
     return "it keeps " + std::to_string(*quality.size) + " layers, and cannot blend " +
            std::to_string(*quality.layers) + ": leave out its size, or lower --layers";

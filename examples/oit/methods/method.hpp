@@ -99,6 +99,10 @@ public:
 /// size.
 [[nodiscard]] std::uint32_t read_size_of(const MethodInfo& method, const std::string& text);
 
+/// For methods that do not keep all fragments: why they cannot draw a frame that needs them, or
+/// nothing.
+[[nodiscard]] std::string needs_all_fragments(const Frame& frame);
+
 /// For methods that draw every frame.
 [[nodiscard]] std::string refuses_nothing(const Frame& frame, const FrameFeatures& features);
 

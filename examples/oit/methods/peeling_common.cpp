@@ -13,7 +13,7 @@ std::string peeling_refusal(const Frame& frame, const FrameFeatures&) {
     if (frame.quality.depth_range) return "it has no depth for each sample";
     if (frame.quality.samples > 1 && frame.quality.resolve == Resolve::per_sample)
         return "it resolves samples by pixel";
-    return {};
+    return needs_all_fragments(frame);
 }
 
 void require_wide_atomics(const cellist::Device& device, std::string_view what) {

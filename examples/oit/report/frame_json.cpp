@@ -33,8 +33,13 @@ ordered_json json_of(const FrameOptions& options, std::string_view program) {
     json["up"] = axes[static_cast<std::size_t>(options.up.value_or(support::UpAxis::unknown))];
     json["blend"] = support::file_or_null(blend_text(options));
     json["opaque_floor"] = options.opaque_floor;
+    json["lens"] = nullptr;
+    if (options.lens)
+        json["lens"] = {{"radius", options.lens->radius},
+                        {"focus", support::finite_or_null(options.lens->focus)}};
     const Quality& quality = options.quality;
     json["samples"] = quality.samples;
+    json["coverage"] = quality.coverage == Coverage::exact ? "exact" : "samples";
     json["resolve"] = quality.resolve == Resolve::per_pixel ? "pixel" : "sample";
     json["depth_range"] = quality.depth_range;
     json["depth_scale"] = quality.depth_scale == DepthScale::linear ? "linear" : "reversed";
@@ -46,7 +51,7 @@ ordered_json json_of(const Setting& setting) {
     return {{"options", text(setting)},          {"method", setting.method->name},
             {"exact", setting.method->exact},    {"size", or_null(quality.size)},
             {"layers", or_null(quality.layers)}, {"epsilon", as_read(quality.epsilon)},
-            {"format", name_of(quality.format)}};
+            {"format", name_of(quality.format)}, {"lens_rays", quality.lens_rays}};
 }
 
 ordered_json times_json(const Measurement& m) {

@@ -33,7 +33,11 @@ using Line = std::function<std::ostream&(const std::string& name)>;
 // these make.
 void print_comparison(const Report& report, const Line& line) {
     const Comparison& c = *report.comparison;
-    line("PSNR") << support::fixed(c.psnr_db, 1) << " dB against all layers in double precision\n";
+    line("PSNR") << support::fixed(c.psnr_db, 1) << " dB against "
+                 << (report.reference_views > 0
+                         ? "the mean of " + support::grouped(report.reference_views) + " pictures"
+                         : "all layers in double precision")
+                 << '\n';
     if (report.nearest_comparison)
         line("") << support::fixed(report.nearest_comparison->psnr_db, 1) << " dB against "
                  << nearest_text(*report.options.quality.layers) << " in double precision\n";
@@ -43,6 +47,7 @@ void print_comparison(const Report& report, const Line& line) {
                        << support::counted(c.pixels, "pixel") << ", "
                        << support::grouped(c.pixels_explained)
                        << " explained by depths closer than 2^-20 of each other\n";
+    if (report.reference_views > 0) return;
     if (!c.has_depths) {
         line("counts, depths") << "not compared: "
                                << (report.blends_slices ? "lists exist one slice at a time"
@@ -67,8 +72,14 @@ void print_method(const Report& report, const Line& line) {
     line("method")
         << method_text({&method_named(options.method), options.quality}) << ", "
         << (report.node_bytes ? "nodes of " + std::to_string(*report.node_bytes) + " bytes, " : "")
-        << support::counted(static_cast<std::uint64_t>(options.quality.samples), "sample")
-        << " a pixel\n";
+        << (options.quality.coverage == Coverage::exact
+                ? "exact coverage"
+                : support::counted(static_cast<std::uint64_t>(options.quality.samples), "sample") +
+                      " a pixel")
+        << '\n';
+    if (options.lens)
+        line("lens") << "radius " << support::shortest(options.lens->radius) << ", focus "
+                     << support::shortest(options.lens->focus) << '\n';
     if (options.quality.reduce > 1)
         line("reduced") << "transparent surfaces drawn with " << options.quality.reduce
                         << " times fewer pixels a side\n";
@@ -163,8 +174,9 @@ nlohmann::ordered_json dropped_json(const support::MeshDrops& drops) {
             {"bytes_after_end", drops.bytes_after_end}};
 }
 
-nlohmann::ordered_json reference_json(const Comparison& comparison) {
-    return {{"fragments", comparison.fragments},
+nlohmann::ordered_json reference_json(const Comparison& comparison, std::size_t views) {
+    return {{"views", views},
+            {"fragments", comparison.fragments},
             {"pixels_ambiguous", comparison.pixels_ambiguous},
             {"pixels_with_other_count", comparison.pixels_with_other_count},
             {"max_depth_error", comparison.max_depth_error}};
@@ -258,7 +270,7 @@ nlohmann::ordered_json to_json(const Report& report) {
     json["reference"] = nullptr;
     if (report.comparison) {
         json.update(json_of(*report.comparison));
-        json["reference"] = reference_json(*report.comparison);
+        json["reference"] = reference_json(*report.comparison, report.reference_views);
     }
     json["pixels_nan"] = report.pixels_nan;
     json["nearest_layers"] = nullptr;

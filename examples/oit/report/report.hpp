@@ -36,6 +36,7 @@ struct Report {
     Measurement times{.setting = {}};      ///< of frames: from clearing to the image on the device
     PassTimes passes;                      ///< medians
     std::optional<Comparison> comparison;  ///< with all layers
+    std::size_t reference_views = 0;       ///< as reference_views(): pictures, or 0
     std::optional<Comparison>
         nearest_comparison;        ///< with Quality::layers, where there is a number
     std::optional<Choice> choice;  ///< for a budget

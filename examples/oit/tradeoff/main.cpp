@@ -8,6 +8,7 @@
 #include "files.hpp"
 #include "input_error.hpp"
 #include "json_report.hpp"
+#include "methods/view_mean.hpp"
 #include "number_text.hpp"
 #include "progress.hpp"
 #include "tradeoff/metrics.hpp"
@@ -17,9 +18,9 @@
 
 namespace {
 
-oit::Reference reference_of(const oit::Frame& frame) {
+oit::Reference reference_of(const cellist::Device& device, const oit::Frame& frame) {
     support::Progress progress("reference");
-    return oit::draw_reference(frame, {.progress = [&](double part) { progress.update(part); }});
+    return oit::reference_of(device, frame, [&](double part) { progress.update(part); });
 }
 
 void print_progress(const oit::Measurement& measurement, std::size_t done, std::size_t count) {
@@ -41,7 +42,7 @@ void run(const oit::TradeoffOptions& options) {
                      .frames = options.frames};
     oit::stand_on_floor(scene, options);
     const oit::Frame frame = oit::make_frame(scene, options);
-    const oit::Reference reference = reference_of(frame);
+    const oit::Reference reference = reference_of(device, frame);
     if (reference.fragments.empty())
         throw support::InputError("nothing transparent is in view of '" + oit::title_of(options) +
                                   "', so there is nothing to compare");
