@@ -32,6 +32,8 @@ const std::vector<Row> frame_rows{
     {"--up", "--up z", "/up", "z"},
     {"--blend", "--blend additive", "/blend", "additive"},
     {"--samples", "--samples 4", "/samples", 4},
+    {"--lens", "--lens 0.1,inf", "/lens/radius", 0.1},
+    {"--samples", "--samples exact", "/coverage", "exact"},
     {"--resolve", "--samples 4 --resolve sample", "/resolve", "sample"},
     {"--depth-range", "--samples 4 --depth-range", "/depth_range", true},
     {"--depth-scale", "--depth-scale reversed", "/depth_scale", "reversed"},
@@ -49,6 +51,7 @@ const std::vector<Row> oit_rows{
     {"--epsilon", "--epsilon 0.01", "/epsilon", 0.01},
     {"--format", "--format rgba8", "/format", "rgba8"},
     {"--reduce", "--reduce 2", "/reduce", 2},
+    {"--lens-rays", "--lens 0.1,4 --lens-rays 8", "/lens_rays", 8},
     {"--memory", "--memory 64MiB", "/memory_bytes", 64 << 20},
     {"--budget", "--budget 40dB", "/budget/budget", "40dB"},
     {"--check-every", "--budget 40dB --until 2 --check-every 3", "/check_every", 3},
@@ -135,7 +138,8 @@ void require_all_options(const std::string& help, std::vector<Row> rows, const a
         REQUIRE(report.contains(key));
         CHECK(report[key] == row.value);
         CHECK(report_of("gearworks").contains(ordered_json::json_pointer(row.key)) ==
-              (!row.key.starts_with("/budget/") && row.option != "--reference"));
+              (!row.key.starts_with("/budget/") && !row.key.starts_with("/lens/") &&
+               row.option != "--reference"));
     }
     // An option that is new has a row here, and so a key.
     CHECK(options_in(help) == known);
