@@ -1,8 +1,10 @@
 // The hardware's limits for an insert. The work-item's index is the address, so there is no
-// allocation. A node is stored at once. Every kernel checks its range, as an insert does.
+// allocation, but in allocate_exchange_and_store. A node is stored at once. Every kernel checks its
+// range, as an insert does.
 //
-//   heads   cells     the index of the last node of each cell
-//   nodes   count     the words of a record, then the link
+//   heads     cells     the index of the last node of each cell
+//   nodes     count     the words of a record, then the link
+//   counters  256 * 16  nodes of each counter; a counter alone in its cache line
 
 #if BENCH_WORDS == 1
 typedef uint2 bench_node;
@@ -44,14 +46,18 @@ kernel void exchange_and_store(volatile global uint* heads, global bench_node* n
     nodes[i] = BENCH_NODE(i, next);
 }
 
-// The same in an insert's order: the whole node, the exchange, the link.
-kernel void store_exchange_link(volatile global uint* heads, global bench_node* nodes, uint cells,
-                                uint distribution, uint count) {
+// The same with the least that an allocation takes: counters of blocks of 256 nodes, which are
+// never full. Compilers make one atomic operation of those of a warp.
+kernel void allocate_exchange_and_store(volatile global uint* heads, global bench_node* nodes,
+                                        volatile global uint* counters, uint cells,
+                                        uint distribution, uint count) {
     const uint i = get_global_id(0);
     if (i >= count) return;
-    nodes[i] = BENCH_NODE(i, 0xFFFFFFFFu);
-    const uint next = atomic_xchg(&heads[bench_cell(i, cells, distribution)], i);
-    ((global uint*)&nodes[i])[BENCH_WORDS] = next;
+    const uint counter = get_group_id(0) & 255u;
+    const uint n = atomic_inc(&counters[16u * counter]);
+    const uint node = ((n & ~255u) + counter) * 256u + (n & 255u);
+    const uint next = atomic_xchg(&heads[bench_cell(i, cells, distribution)], node);
+    if (node < count) nodes[node] = BENCH_NODE(i, next);
 }
 
 // Traverses every list of exchange_and_store and writes its digest; one work-item a cell.

@@ -26,7 +26,8 @@ Ceilings::Ceilings(const Suite& suite, const Workload& workload)
       store_(suite.device(), source_, "store"),
       exchange_(suite.device(), source_, "exchange"),
       exchange_and_store_(suite.device(), source_, "exchange_and_store"),
-      store_exchange_link_(suite.device(), source_, "store_exchange_link") {
+      allocate_exchange_and_store_(suite.device(), source_, "allocate_exchange_and_store"),
+      counters_(suite.device(), 256 * 16) {
     const std::uint64_t words = std::uint64_t{workload.nodes} * (workload.words() + 1);
     const std::uint64_t bytes = (words + workload.cells()) * sizeof(cl_uint);
     // copy() needs two.
@@ -66,11 +67,12 @@ double Ceilings::exchange_and_store() {
                                                   workload_.nodes));
 }
 
-double Ceilings::store_exchange_link() {
+double Ceilings::allocate_exchange_and_store() {
     Buffers& buffers = next();
-    return device_seconds(store_exchange_link_.run(workload_.nodes, buffers.heads, buffers.nodes,
-                                                   workload_.cells(), workload_.distribution.id,
-                                                   workload_.nodes));
+    counters_.fill(0);
+    return device_seconds(allocate_exchange_and_store_.run(
+        cellist::Range::padded(workload_.nodes), buffers.heads, buffers.nodes, counters_,
+        workload_.cells(), workload_.distribution.id, workload_.nodes));
 }
 
 void Ceilings::check(const cellist::Device& device) {
@@ -91,7 +93,7 @@ void add_ceilings(Suite& suite) {
          {Operation{"copy", &Ceilings::copy, 0, 2}, Operation{"store", &Ceilings::store, 0, 1},
           Operation{"exchange", &Ceilings::exchange, 8, 0},
           Operation{"exchange_and_store", &Ceilings::exchange_and_store, 8, 1},
-          Operation{"store_exchange_link", &Ceilings::store_exchange_link, 8, 1}}) {
+          Operation{"allocate_exchange_and_store", &Ceilings::allocate_exchange_and_store, 8, 1}}) {
         for (const Workload& workload : suite.workloads()) {
             // Every size of random cells, and the base of the others.
             if (workload.distribution.id != BENCH_RANDOM &&

@@ -19,7 +19,7 @@ public:
     double store();
     double exchange();
     double exchange_and_store();
-    double store_exchange_link();
+    double allocate_exchange_and_store();
 
 private:
     struct Buffers {
@@ -32,7 +32,8 @@ private:
 
     Workload workload_;
     cellist::Source source_;
-    cellist::Kernel copy_, store_, exchange_, exchange_and_store_, store_exchange_link_;
+    cellist::Kernel copy_, store_, exchange_, exchange_and_store_, allocate_exchange_and_store_;
+    cellist::Buffer<cl_uint> counters_;  ///< of allocate_exchange_and_store_
     std::deque<Buffers> buffers_;
     std::size_t turn_ = 0;
 };
