@@ -50,18 +50,24 @@ void write_pictures(const Options& options, const shadows::Scene& scene, Rendere
     write(options.out_unblocked, renderer.unblocked(), width, height);
     write(options.out_a, renderer.a(), width, height);
     write(options.out_b, renderer.b(), renderer.b_width(), renderer.b_height());
-    if (!options.out_heat.empty()) {
+    if (!options.heatmap.empty()) {
         const std::vector<cl_uint> passed = renderer.passed_entries(scene);
         report.most_passed = *std::ranges::max_element(passed);
-        shadows::write_heat_map(options.out_heat, std::vector<double>(passed.begin(), passed.end()),
-                                static_cast<double>(*report.most_passed), width, height);
+        support::write_heat_map(options.heatmap,
+                                {.values = std::vector<double>(passed.begin(), passed.end()),
+                                 .width = width,
+                                 .height = height,
+                                 .caption = "list entries"});
     }
     if (!options.out_error.empty()) {
         const support::ImageDifference& error = report.accuracy->picture;
         if (!report.accuracy->all_pixels)
             throw support::InputError("--out-error needs Embree for this scene (libembree-dev)");
-        shadows::write_heat_map(options.out_error, error.errors, error.max_abs_error, width,
-                                height);
+        support::write_heat_map(options.out_error, {.values = error.errors,
+                                                    .width = width,
+                                                    .height = height,
+                                                    .caption = "error",
+                                                    .are_counts = false});
     }
 }
 

@@ -96,7 +96,7 @@ void add_output_options(support::CommandLine& line, Options& options) {
                   "write the picture without indirect shadows", "FILE");
     line.add_text("--out-a", options.out_a, "write buffer A: all indirect light", "FILE");
     line.add_text("--out-b", options.out_b, "write buffer B: blocked indirect light", "FILE");
-    line.add_text("--out-heat", options.out_heat,
+    line.add_text("--heatmap", options.heatmap,
                   "write a heat map of the list entries that rays from the eye pass", "FILE");
     line.add_flag("--reference", options.reference,
                   "compare with the same light in double precision on the CPU; exit code 1 if a "
@@ -110,9 +110,9 @@ void add_output_options(support::CommandLine& line, Options& options) {
 
 void check(const support::CommandLine& line, const Options& options) {
     const support::NamedFile outputs[] = {
-        {"--out", options.out.of(1)},     {"--out-unblocked", options.out_unblocked},
-        {"--out-a", options.out_a},       {"--out-b", options.out_b},
-        {"--out-heat", options.out_heat}, {"--out-error", options.out_error},
+        {"--out", options.out.of(1)},   {"--out-unblocked", options.out_unblocked},
+        {"--out-a", options.out_a},     {"--out-b", options.out_b},
+        {"--heatmap", options.heatmap}, {"--out-error", options.out_error},
         {"--json", options.json}};
     std::vector<support::NamedFile> inputs;
     if (options.scene != "room" && options.scene != "swarm")
@@ -129,7 +129,7 @@ void check(const support::CommandLine& line, const Options& options) {
         {"--out-unblocked", options.trade, "--trade writes no picture: leave out --out-unblocked"},
         {"--out-a", options.trade, "--trade writes no picture: leave out --out-a"},
         {"--out-b", options.trade, "--trade writes no picture: leave out --out-b"},
-        {"--out-heat", options.trade, "--trade writes no picture: leave out --out-heat"},
+        {"--heatmap", options.trade, "--trade writes no picture: leave out --heatmap"},
         {"--out-error", options.trade, "--trade writes no picture: leave out --out-error"},
         {"--time-step", options.trade, "--trade draws one moment: leave out --time-step"},
     };
@@ -141,7 +141,7 @@ void check(const support::CommandLine& line, const Options& options) {
 
 bool Options::writes_to_stdout() const {
     return std::ranges::any_of(
-        std::array{out.of(1), out_unblocked, out_a, out_b, out_heat, out_error, json},
+        std::array{out.of(1), out_unblocked, out_a, out_b, heatmap, out_error, json},
         support::is_standard_output);
 }
 

@@ -25,7 +25,7 @@ struct Options {
     std::uint32_t frames = 5;
     double time_step = 0.04;  ///< in seconds
     support::PictureName out{"shadows.png"};
-    std::filesystem::path out_unblocked, out_a, out_b, out_heat, out_error, json;
+    std::filesystem::path out_unblocked, out_a, out_b, heatmap, out_error, json;
     bool reference = false;
     bool trade = false;
     std::string device;

@@ -169,7 +169,7 @@ ordered_json to_json(const FrameReport& report) {
                      {"out_unblocked", support::file_or_null(options.out_unblocked)},
                      {"out_a", support::file_or_null(options.out_a)},
                      {"out_b", support::file_or_null(options.out_b)},
-                     {"out_heat", support::file_or_null(options.out_heat)},
+                     {"heatmap", support::file_or_null(options.heatmap)},
                      {"out_error", support::file_or_null(options.out_error)},
                      {"json", support::file_or_null(options.json)}};
     return json;

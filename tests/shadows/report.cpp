@@ -22,7 +22,7 @@ TEST_CASE("a run writes its pictures and a report whose keys the document has") 
     const Program program(CELLIST_SHADOWS_PROGRAM);
     const ProgramResult result = program.run(
         "swarm --triangles 2000 --width 64 --height 48 --frames 2 --out frame-%02d.png "
-        "--out-unblocked u.exr --out-a a.pfm --out-b b.jpg --out-heat h.png --out-error e.png "
+        "--out-unblocked u.exr --out-a a.pfm --out-b b.jpg --heatmap h.png --out-error e.png "
         "--json r.json");
     INFO(result.error);
     CHECK(result.exit_code == 0);
