@@ -155,7 +155,7 @@ void describe(oit::Report& report, const oit::Scene& scene, const cellist::Devic
 }
 
 void write(oit::Report& report, const cellist::Device& device, const oit::Frame& frame,
-           const oit::Renderer& renderer) {
+           oit::Renderer& renderer) {
     const oit::Options& options = report.options;
     if (oit::method_named(options.method).has_nodes)
         report.node_bytes = 4 * renderer.layout().words;
@@ -169,6 +169,8 @@ void write(oit::Report& report, const cellist::Device& device, const oit::Frame&
     report.method_bytes = renderer.method().device_bytes();
     report.device_bytes = renderer.device_bytes();
     if (options.reference) compare_with_references(report, device, frame, renderer, image);
+    if (!options.heatmap.empty())
+        oit::write_layers(options.heatmap, renderer.layers(), renderer.drawn_frame());
     report.peak_bytes = peak_bytes();
     if (!options.json.empty())
         support::write_file(options.json, support::dump(to_json(report), 2) + '\n');

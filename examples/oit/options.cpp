@@ -55,10 +55,11 @@ void check_outputs(const Options& options) {
     const support::NamedFile outputs[] = {{"--out", first},
                                           {"--write-reference", options.write_reference},
                                           {"--write-difference", options.write_difference},
+                                          {"--heatmap", options.heatmap},
                                           {"--json", options.json}};
     check_outputs(options, outputs);
     for (const std::filesystem::path& picture :
-         {first, options.write_reference, options.write_difference})
+         {first, options.write_reference, options.write_difference, options.heatmap})
         if (!picture.empty()) (void)support::image_format(picture);
 }
 
@@ -198,6 +199,10 @@ void add_output_options(support::CommandLine& line, Options& options) {
         "write the difference from that rendering: times 16 in .png and .jpg, unscaled in "
         ".pfm and .exr",
         "FILE");
+    line.add_text("--heatmap", options.heatmap,
+                  "write the number of layers in each pixel of the last frame: as colours with a "
+                  "scale in .png and .jpg, unscaled in .pfm and .exr",
+                  "FILE");
     line.add_text("--json", options.json, "write the metrics to this file", "FILE");
     line.add_number("--frames", options.frames, 1, 1'000'000,
                     "timed frames, after a warm-up; times are medians");
@@ -206,8 +211,9 @@ void add_output_options(support::CommandLine& line, Options& options) {
 }  // namespace
 
 bool Options::writes_to_stdout() const {
-    return std::ranges::any_of(std::array{out.of(1), write_reference, write_difference, json},
-                               support::is_standard_output);
+    return std::ranges::any_of(
+        std::array{out.of(1), write_reference, write_difference, heatmap, json},
+        support::is_standard_output);
 }
 
 Options parse_options(int count, const char* const* arguments) {

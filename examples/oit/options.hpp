@@ -24,6 +24,7 @@ struct Options : FrameOptions {
     support::PictureName out{"oit.png"};
     std::filesystem::path write_reference = {};   ///< asks for `reference`, too
     std::filesystem::path write_difference = {};  ///< asks for `reference`, too
+    std::filesystem::path heatmap = {};
     std::filesystem::path json = {};
     std::uint32_t frames = 5;
     /// Whether frames show different moments.

@@ -4,19 +4,11 @@
 #include <optional>
 
 #include "input_error.hpp"
+#include "methods/count_fragments.hpp"
 #include "oit_kernels.hpp"
 
 namespace oit {
 namespace {
-
-// Of all fragments, in one pass that only counts. Blocks.
-cellist::Lengths count_fragments(FragmentSource& source) {
-    cellist::Buffer<cl_uint> counts(source.device(), source.frame().pixels());
-    raster::Pass pass = source.pass(kernels::count_cl, "count.cl");
-    counts.fill(0);
-    source.draw(pass, counts);
-    return cellist::Lengths(counts.download());
-}
 
 template <class Node>
 class ListSlices : public Method {
@@ -62,7 +54,7 @@ public:
     [[nodiscard]] std::uint32_t slices() const override { return count_; }
     // The lists are those of the last slice, so fragments are counted anew.
     [[nodiscard]] std::optional<cellist::Lengths> lengths() const override {
-        return count_fragments(source_);
+        return cellist::Lengths(count_fragments(source_));
     }
 
 private:
@@ -91,7 +83,7 @@ private:
     }
 
     [[noreturn]] void refuse() {
-        const std::uint64_t longest = count_fragments(source_).longest;
+        const std::uint64_t longest = cellist::Lengths(count_fragments(source_)).longest;
         throw support::InputError(
             "--memory of " + std::to_string(budget()) +
             " bytes is too little for this frame: it needs at least " +

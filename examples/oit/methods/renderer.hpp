@@ -9,6 +9,7 @@
 
 #include "frame/fragment_source.hpp"
 #include "frame/reduction.hpp"
+#include "methods/count_fragments.hpp"
 #include "methods/method.hpp"
 
 namespace oit {
@@ -54,6 +55,11 @@ public:
     [[nodiscard]] const cellist::Buffer<cl_float4>& picture() const {
         return reduction_ ? reduction_->image() : source_.image();
     }
+    /// The number of transparent fragments in each pixel of drawn_frame(), whatever the method
+    /// stores. Draws them once more. Blocks.
+    [[nodiscard]] std::vector<cl_uint> layers() { return count_fragments(source_); }
+    /// The frame whose fragments the method gets: smaller than the image with Quality::reduce.
+    [[nodiscard]] const Frame& drawn_frame() const { return source_.frame(); }
     [[nodiscard]] const Method& method() const { return *method_; }
     [[nodiscard]] const FrameFeatures& features() const { return source_.features(); }
     [[nodiscard]] const NodeLayout& layout() const { return source_.layout(); }

@@ -314,10 +314,16 @@ double swap_error(const ReferenceFragment& a, const ReferenceFragment& b) {
     return a.alpha * b.alpha * std::max({difference.x, difference.y, difference.z});
 }
 
+std::vector<std::uint32_t> Reference::layers() const {
+    std::vector<std::uint32_t> counts;
+    for (std::size_t p = 0; p + 1 < offsets.size(); ++p)
+        counts.push_back(static_cast<std::uint32_t>(offsets[p + 1] - offsets[p]));
+    return counts;
+}
+
 std::uint64_t Reference::most_layers() const {
     std::uint64_t most = 0;
-    for (std::size_t p = 0; p + 1 < offsets.size(); ++p)
-        most = std::max(most, offsets[p + 1] - offsets[p]);
+    for (const std::uint32_t count : layers()) most = std::max<std::uint64_t>(most, count);
     return most;
 }
 

@@ -31,6 +31,8 @@ struct Reference {
     /// whether a fragment is behind the opaque surface.
     std::vector<bool> ambiguous;
 
+    /// The number of fragments in each pixel.
+    [[nodiscard]] std::vector<std::uint32_t> layers() const;
     /// Fragments of the pixel that has the most.
     [[nodiscard]] std::uint64_t most_layers() const;
 };

@@ -1,22 +1,8 @@
 #include "report/picture.hpp"
 
-#include <cstddef>
+#include "heat_map.hpp"
 
 namespace oit {
-
-std::vector<cl_float4> side_by_side(const std::vector<cl_float4>& image, const Frame& frame) {
-    const auto width = static_cast<std::size_t>(frame.width());
-    const auto height = static_cast<std::size_t>(frame.height());
-    std::vector<cl_float4> rows;
-    rows.reserve(image.size());
-    for (std::size_t y = 0; y < height; ++y)
-        for (std::size_t eye = 0; eye < frame.views.size(); ++eye) {
-            const auto row =
-                image.begin() + static_cast<std::ptrdiff_t>((eye * height + y) * width);
-            rows.insert(rows.end(), row, row + static_cast<std::ptrdiff_t>(width));
-        }
-    return rows;
-}
 
 std::vector<cl_float4> linear_image(const Reference& reference) {
     std::vector<cl_float4> image;
@@ -29,6 +15,15 @@ std::vector<cl_float4> linear_image(const Reference& reference) {
 
 int picture_width(const Frame& frame) {
     return frame.width() * static_cast<int>(frame.views.size());
+}
+
+void write_layers(const std::filesystem::path& path, const std::vector<cl_uint>& layers,
+                  const Frame& frame) {
+    const std::vector<cl_uint> rows = side_by_side(layers, frame);
+    support::write_heat_map(path, {.values = std::vector<double>(rows.begin(), rows.end()),
+                                   .width = picture_width(frame),
+                                   .height = frame.height(),
+                                   .caption = "layers"});
 }
 
 }  // namespace oit

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <filesystem>
 #include <vector>
 
 #include <cellist/opencl.hpp>
@@ -10,8 +12,8 @@
 namespace oit {
 
 /// The pictures of all eyes beside one another, row by row, from those behind one another.
-[[nodiscard]] std::vector<cl_float4> side_by_side(const std::vector<cl_float4>& image,
-                                                  const Frame& frame);
+template <class Pixel>
+[[nodiscard]] std::vector<Pixel> side_by_side(const std::vector<Pixel>& image, const Frame& frame);
 
 /// The width of all eyes side by side.
 [[nodiscard]] int picture_width(const Frame& frame);
@@ -19,4 +21,26 @@ namespace oit {
 /// The reference's image in floats, eye by eye.
 [[nodiscard]] std::vector<cl_float4> linear_image(const Reference& reference);
 
+/// Writes a heat map of the number of layers in each pixel of the frame, all eyes side by side.
+/// `layers` are eye by eye. Throws as support::write_file() does.
+void write_layers(const std::filesystem::path& path, const std::vector<cl_uint>& layers,
+                  const Frame& frame);
+
 }  // namespace oit
+
+// ---- implementation
+
+template <class Pixel>
+std::vector<Pixel> oit::side_by_side(const std::vector<Pixel>& image, const Frame& frame) {
+    const auto width = static_cast<std::size_t>(frame.width());
+    const auto height = static_cast<std::size_t>(frame.height());
+    std::vector<Pixel> rows;
+    rows.reserve(image.size());
+    for (std::size_t y = 0; y < height; ++y)
+        for (std::size_t eye = 0; eye < frame.views.size(); ++eye) {
+            const auto row =
+                image.begin() + static_cast<std::ptrdiff_t>((eye * height + y) * width);
+            rows.insert(rows.end(), row, row + static_cast<std::ptrdiff_t>(width));
+        }
+    return rows;
+}

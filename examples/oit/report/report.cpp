@@ -147,6 +147,7 @@ void print_files(const Options& options, const Line& line) {
          options.out.has_number() ? options.out.path() : options.out.of(1));
     file("reference", options.write_reference);
     file("difference", options.write_difference);
+    file("heat map", options.heatmap);
 }
 
 nlohmann::ordered_json passes_json(const Report& report) {
@@ -186,6 +187,7 @@ nlohmann::ordered_json files_json(const Options& options) {
     return {{"out", support::file_or_null(options.out.path())},
             {"write_reference", support::file_or_null(options.write_reference)},
             {"write_difference", support::file_or_null(options.write_difference)},
+            {"heatmap", support::file_or_null(options.heatmap)},
             {"json", support::file_or_null(options.json)}};
 }
 

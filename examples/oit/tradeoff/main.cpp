@@ -11,6 +11,7 @@
 #include "methods/view_mean.hpp"
 #include "number_text.hpp"
 #include "progress.hpp"
+#include "report/picture.hpp"
 #include "tradeoff/metrics.hpp"
 #include "tradeoff/page.hpp"
 #include "tradeoff/sweep.hpp"
@@ -74,6 +75,7 @@ void run(const oit::TradeoffOptions& options) {
     });
 
     oit::print(sweep, options.writes_to_stdout() ? std::cerr : std::cout);
+    if (!options.heatmap.empty()) oit::write_layers(options.heatmap, reference.layers(), frame);
     if (!options.json.empty())
         support::write_file(options.json, support::dump(to_json(sweep), 2) + '\n');
     if (!options.csv.empty()) support::write_file(options.csv, to_csv(sweep));

@@ -119,7 +119,8 @@ ordered_json to_json(const Sweep& sweep) {
     json["device"] = sweep.device;
     json["driver"] = sweep.driver;
     json["methods"] = options.methods;
-    json["files"] = {{"json", support::file_or_null(options.json)},
+    json["files"] = {{"heatmap", support::file_or_null(options.heatmap)},
+                     {"json", support::file_or_null(options.json)},
                      {"csv", support::file_or_null(options.csv)},
                      {"html", support::file_or_null(options.html)}};
     json["triangles"] = sweep.triangles;

@@ -104,9 +104,8 @@ double typical_spread(std::span<const Measurement> measurements) {
 
 std::vector<std::uint64_t> pixels_by_layers(const Reference& reference) {
     std::vector<std::uint64_t> bins(std::bit_width(reference.most_layers()) + 1);
-    for (std::size_t p = 0; p + 1 < reference.offsets.size(); ++p)
-        ++bins[static_cast<std::size_t>(
-            std::bit_width(reference.offsets[p + 1] - reference.offsets[p]))];
+    for (const std::uint32_t count : reference.layers())
+        ++bins[static_cast<std::size_t>(std::bit_width(count))];
     return bins;
 }
 

@@ -6,6 +6,7 @@
 
 #include "command_line.hpp"
 #include "files.hpp"
+#include "image.hpp"
 #include "input_error.hpp"
 
 namespace oit {
@@ -29,7 +30,7 @@ std::vector<std::string_view> read_methods(const std::string& text) {
 }  // namespace
 
 bool TradeoffOptions::writes_to_stdout() const {
-    return std::ranges::any_of(std::array{json, csv, html}, support::is_standard_output);
+    return std::ranges::any_of(std::array{heatmap, json, csv, html}, support::is_standard_output);
 }
 
 TradeoffOptions parse_tradeoff_options(int count, const char* const* arguments) {
@@ -45,15 +46,22 @@ TradeoffOptions parse_tradeoff_options(int count, const char* const* arguments) 
     line.add_number("--frames", options.frames, 1, 1'000'000,
                     "timed frames of each setting, in three rounds over all of them; times are "
                     "medians");
+    line.add_text("--heatmap", options.heatmap,
+                  "write the number of layers in each pixel: as colours with a scale in .png and "
+                  ".jpg, unscaled in .pfm and .exr",
+                  "FILE");
     line.add_text("--json", options.json, "write the metrics to this file", "FILE");
     line.add_text("--csv", options.csv, "write a table with a line for each setting to this file",
                   "FILE");
     line.add_text("--html", options.html, "write a report with plot and pictures to this file",
                   "FILE");
     line.add_check([&] {
-        const support::NamedFile outputs[] = {
-            {"--json", options.json}, {"--csv", options.csv}, {"--html", options.html}};
+        const support::NamedFile outputs[] = {{"--heatmap", options.heatmap},
+                                              {"--json", options.json},
+                                              {"--csv", options.csv},
+                                              {"--html", options.html}};
         check_outputs(options, outputs);
+        if (!options.heatmap.empty()) (void)support::image_format(options.heatmap);
     });
     line.add_footer(help_on_tables());
     options.help_text = line.parse(count, arguments).value_or("");

@@ -14,6 +14,7 @@ namespace oit {
 struct TradeoffOptions : FrameOptions {
     std::vector<std::string_view> methods;  ///< names, by position in the table
     std::uint32_t frames = 6;               ///< of each setting that are timed
+    std::filesystem::path heatmap = {};
     std::filesystem::path json = {};
     std::filesystem::path csv = {};
     std::filesystem::path html = {};
