@@ -62,6 +62,7 @@ const std::vector<Row> oit_rows{
     {"--reference", "--reference", "/reference/fragments", 0},
     {"--write-reference", "--write-reference a.exr", "/files/write_reference", "a.exr"},
     {"--write-difference", "--write-difference a.pfm", "/files/write_difference", "a.pfm"},
+    {"--heatmap", "--heatmap a.png", "/files/heatmap", "a.png"},
     {"--out", "--out caf\xE9.jpg", "/files/out", "caf\\xE9.jpg"},
     {"--json", "--json a.json", "/files/json", "a.json"},
     {"--frames", "--frames 7", "/frames", 7},
@@ -70,6 +71,7 @@ const std::vector<Row> oit_rows{
 const std::vector<Row> tradeoff_rows{
     {"--methods", "--methods weighted,linked", "/methods", {"linked", "weighted"}},
     {"--frames", "--frames 7", "/frames", 7},
+    {"--heatmap", "--heatmap a.png", "/files/heatmap", "a.png"},
     {"--json", "--json a.json", "/files/json", "a.json"},
     {"--csv", "--csv a.csv", "/files/csv", "a.csv"},
     {"--html", "--html a.html", "/files/html", "a.html"},

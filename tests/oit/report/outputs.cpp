@@ -18,8 +18,9 @@ void require_full(const Program& program, const std::string& arguments, const st
 TEST_CASE("a full disk is an error for every file of cellist-oit") {
     const Program program(CELLIST_OIT_PROGRAM);
     (void)program.folder().write("oit.png", "as it was");
-    for (const std::string options : {"--out", "--out x.png --write-reference",
-                                      "--out x.png --write-difference", "--out x.png --json"})
+    for (const std::string options :
+         {"--out", "--out x.png --write-reference", "--out x.png --write-difference",
+          "--out x.png --heatmap", "--out x.png --json"})
         require_full(program, small + options + " /dev/full", "'/dev/full'");
     // What follows the # are the redirections of Program::run().
     require_full(program, small + std::string("--out x.png 2>stderr >/dev/full #"), "to stdout");
@@ -31,7 +32,7 @@ TEST_CASE("a full disk is an error for every file of cellist-oit") {
 TEST_CASE("a full disk is an error for every file of cellist-tradeoff") {
     const Program program(CELLIST_TRADEOFF_PROGRAM);
     const std::string small_sweep = "knot.obj --size 16x12 --frames 1 --methods weighted ";
-    for (const std::string option : {"--html", "--csv", "--json"})
+    for (const std::string option : {"--html", "--csv", "--json", "--heatmap"})
         require_full(program, small_sweep + option + " /dev/full", "'/dev/full'");
     require_full(program, small_sweep + "2>stderr >/dev/full #", "to stdout");
 }
