@@ -24,6 +24,13 @@
 // node by as many, and comes back.
 #define CELLIST_CAPACITY_NODES_MAX 0xC0000000u
 
+// Words from one counter of a region to the next: a counter is alone in its sector of 32 bytes.
+#define CELLIST_REGION_COUNT_WORDS 8u
+// Work-items that move the records of a region to their lists.
+#define CELLIST_REGION_GROUP 512
+// Work-items that divide the memory into regions.
+#define CELLIST_REGION_SCAN_GROUP 1024
+
 // Inserts that are counted for one cell; more of them are counted as dropped.
 #define CELLIST_CELL_COUNT_MAX 0x80000000u
 

@@ -6,6 +6,13 @@
 
 namespace cellist::detail {
 
+namespace {
+
+/// So many builds in a row that find a region full, and later builds of the same size count.
+constexpr unsigned region_failures_most = 2;
+
+}  // namespace
+
 CountedStorage::CountedStorage(RecordKernels& kernels, const Shape& shape,
                                const ListsOptions& options)
     : ListStorage(
@@ -59,14 +66,17 @@ std::unique_ptr<Partitions> CountedStorage::partitions_for_pool() const {
         capacity_nodes() <= partitions_failed_at_)
         return nullptr;
     const auto plan = Partitions::plan(pool_.owner()->info, node_layout(record()).size,
-                                       shape_.cells(), capacity_nodes());
+                                       record().size, shape_.cells(), capacity_nodes());
     if (!plan || !pool_.has_room_for(plan->bytes())) return nullptr;
     return Partitions::make(pool_.owner(), *plan);
 }
 
 void CountedStorage::begin_pass() {
     if (partitions_) {
-        pool_.clear(partitions_->heads(), 0, 0, partitions_->plan().words_to_clear());
+        if (partitions_->plan().has_regions())
+            plan_regions();
+        else
+            pool_.clear(partitions_->heads(), 0, 0, partitions_->plan().words_to_clear());
         view_.mode = CELLIST_PARTITIONED;
     } else if (!counted_) {
         clear();
@@ -100,9 +110,53 @@ bool CountedStorage::end_pass() {
     return true;
 }
 
+/// A kernel of regions.cl.
+Kernel& CountedStorage::region_kernel(const char* name) const {
+    const Partitions::Plan& plan = partitions_->plan();
+    const std::size_t bytes = record().size;
+    const auto define = [](const char* macro, std::uint64_t value) {
+        return std::string("#define ") + macro + " " + std::to_string(value) + "u\n";
+    };
+    return kernels_.get({{"regions.cl", kernels::regions_cl}}, name, CELLIST_CONTIGUOUS,
+                        define("CELLIST_REGION_CELLS", std::uint64_t{1} << plan.bits) +
+                            define("CELLIST_REGION_RECORDS", plan.sorted_records) +
+                            define("CELLIST_REGION_STAGED", plan.staged_records) +
+                            define("CELLIST_RECORD_WORDS", bytes % 4 == 0 ? bytes / 4 : 0));
+}
+
+/// Enqueues the division of the partitions' memory into regions, by the lengths of the last lists.
+void CountedStorage::plan_regions() {
+    const Partitions::Plan& plan = partitions_->plan();
+    pool_.clear(partitions_->heads(), 0, 0, 0);
+    region_kernel("cellist_plan_regions")
+        .run(Range::padded(plan.partitions), pool_.heads().cl(),
+             static_cast<cl_uint>(shape_.cells()), plan.bits, plan.partitions,
+             static_cast<cl_uint>(plan.nodes), plan.region_records_most(),
+             partitions_->heads().cl());
+}
+
+/// Enqueues what turns regions into lists, if the pool has room for them.
+void CountedStorage::move_from_regions() {
+    const Partitions::Plan& plan = partitions_->plan();
+    region_kernel("cellist_region_starts")
+        .run(Range::padded(plan.partitions, CELLIST_REGION_SCAN_GROUP), partitions_->heads().cl(),
+             plan.partitions, partitions_->starts().cl());
+    Arguments arguments;
+    ListStorage::add_to(arguments);
+    arguments.add_nodes(partitions_->nodes(), record().name);
+    arguments.add(partitions_->heads().cl());
+    arguments.add(plan.bits);
+    arguments.add(partitions_->starts().cl());
+    region_kernel("cellist_move_region")
+        .enqueue(Range::padded(std::size_t{plan.partitions} * CELLIST_REGION_GROUP,
+                               CELLIST_REGION_GROUP),
+                 arguments);
+}
+
 /// Enqueues what turns partitions into lists, if the pool has room for them.
 void CountedStorage::move_from_partitions() {
     const Partitions::Plan& plan = partitions_->plan();
+    if (plan.has_regions()) return move_from_regions();
     const KernelFile file{"partitions.cl", kernels::partitions_cl};
     kernels_.get({file}, "cellist_partition_starts", view_.mode)
         .run(1, partitions_->heads().cl(), plan.thread_slots, plan.partitions,
@@ -124,7 +178,10 @@ bool CountedStorage::review_partitions(BuildReport& report) {
     const std::uint64_t demand = partitioned_ + inserted.dropped;
     const std::uint64_t kept = std::min<std::uint64_t>(partitioned_, capacity_nodes());
     update(report, demand, kept, inserted.rejected);
-    if (report.dropped == 0) return true;
+    if (report.dropped == 0) {
+        region_failures_ = 0;
+        return true;
+    }
 
     if (inserted.dropped == 0 && pool_.allows(pool_.bytes_with(demand) + plan.bytes())) {
         // All are in the partitions, and the pool is too small for them.
@@ -137,8 +194,10 @@ bool CountedStorage::review_partitions(BuildReport& report) {
     }
     set_partitions(nullptr);
     if (inserted.dropped > 0 && demand <= plan.records) {
-        // A thread found no block: this build counts.
-        partitions_failed_at_ = plan.records;
+        // A thread found no block, or a region was full: this build counts. The next build has
+        // regions of other sizes.
+        if (!plan.has_regions() || ++region_failures_ == region_failures_most)
+            partitions_failed_at_ = plan.records;
         return false;
     }
     pool_.require(demand, report);

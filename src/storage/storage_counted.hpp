@@ -30,7 +30,10 @@ private:
 
     [[nodiscard]] std::unique_ptr<Partitions> partitions_for_pool() const;
     void set_partitions(std::unique_ptr<Partitions> partitions);
+    [[nodiscard]] Kernel& region_kernel(const char* name) const;
+    void plan_regions();
     void move_from_partitions();
+    void move_from_regions();
     bool review_partitions(BuildReport& report);
     void make_room(const BuildReport& report);
     PendingRead find(Findings& findings, const Memory& offsets);
@@ -43,7 +46,8 @@ private:
     Findings filled_{
         {pool_.owner(), 1, sizeof(cellist_findings), "findings"}};  ///< of the filling pass
     std::unique_ptr<Partitions> partitions_;  ///< kept between builds; null where these count
-    /// The capacity for which a thread found no block in the partitions: smaller pools count.
+    unsigned region_failures_ = 0;            ///< builds in a row that found a region full
+    /// The capacity for which a partition had no room: smaller pools count.
     std::uint64_t partitions_failed_at_ = 0;
     cl_uint partitioned_ = 0;  ///< records of the last pass
 };
