@@ -2,6 +2,7 @@
 #include <array>
 
 #include "support/inserts.hpp"
+#include "support/internals.hpp"
 #include "support/storages.hpp"
 
 namespace cellist::test {
@@ -38,6 +39,24 @@ TEST_CASE("packed lists are those of the download, sorted or not") {
         lists.sort(&Item::key);
         require_packed(lists, oracle_of(inserts, 144));
     }
+}
+
+TEST_CASE("work-groups of a GPU pack short and long lists together") {
+    CELLIST_EACH_STORAGE(storage);
+    CELLIST_RANDOM(random, 214u);
+    const Device gpu = like_gpu();
+    Inserts<Item> inserts = random_inserts(5000, 300, random);
+    for (cl_uint i = 0; i < 4500; ++i)
+        inserts.add(i % 9 == 0 ? 130 : 255, {static_cast<cl_float>(i), 5000 + i});
+    ListsOptions options{.storage = storage};
+    if (has_slots(storage)) options.slots = 5000;
+    Lists<Item> lists(gpu, {300}, options);
+    Inserter(lists, gpu).build(lists, inserts);
+    require_packed(lists, oracle_of(inserts, 300));
+    const HostLists<Item> host = lists.download();
+    const std::vector<cl_uint> ids = lists.pack(&Item::id).records.download();
+    REQUIRE(ids.size() == host.records().size());
+    for (std::size_t i = 0; i < ids.size(); ++i) REQUIRE(ids[i] == host.records()[i].id);
 }
 
 TEST_CASE("a member is packed alone") {

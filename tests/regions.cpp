@@ -1,7 +1,7 @@
 // Storage::counted in one pass on GPUs: records go to regions of the cells' partitions, and the
 // library moves them. The device of this test counts as a GPU, whatever it is.
-#include "device/device_state.hpp"
 #include "support/inserts.hpp"
+#include "support/internals.hpp"
 
 namespace cellist::test {
 namespace {
@@ -32,15 +32,6 @@ Halves region_record(cl_uint id, const Halves*) {
 }
 TenWords region_record(cl_uint id, const TenWords*) { return {{1, 2, 3, 4, 5, 6, 7, 8, 9}, id}; }
 
-Device gpu_like() {
-    Device device = Device::choose();
-    DeviceInfo& info = device.state()->info;
-    info.type = CL_DEVICE_TYPE_GPU;
-    info.one_thread_per_work_group = false;
-    info.compute_units = 8;
-    return device;
-}
-
 constexpr std::uint32_t region_records = 70'000;
 
 /// Records for any cells, `modulus` of them in all.
@@ -69,7 +60,7 @@ template <class T>
 void build_in_regions(std::uint32_t cells) {
     INFO(cells << " cells, records of " << sizeof(T) << " bytes");
     CELLIST_RANDOM(random, 950u);
-    const Device gpu = gpu_like();
+    const Device gpu = like_gpu();
     Lists<T> lists(gpu, {cells}, {.storage = Storage::counted});
     build_and_check(lists, gpu, spread_over<T>(cells, random), 2);
     build_and_check(lists, gpu, spread_over<T>(cells, random), 1);
@@ -85,7 +76,7 @@ TEST_CASE("regions hold records of every size, in every number of cells") {
 
 TEST_CASE("the first build has regions of one size where the capacity is known") {
     CELLIST_RANDOM(random, 951u);
-    const Device gpu = gpu_like();
+    const Device gpu = like_gpu();
     Lists<Item> lists(gpu, {5000}, {.storage = Storage::counted, .capacity_nodes = region_records});
     build_and_check(lists, gpu, spread_over<Item>(5000, random), 1);
     // Few records, then none, then many again.
@@ -96,7 +87,7 @@ TEST_CASE("the first build has regions of one size where the capacity is known")
 
 TEST_CASE("a build that finds a region full counts, and the next has other regions") {
     CELLIST_RANDOM(random, 952u);
-    const Device gpu = gpu_like();
+    const Device gpu = like_gpu();
     Lists<Item> lists(gpu, {5000}, {.storage = Storage::counted});
     const Inserts<Item> all = spread_over<Item>(5000, random);
     Inserts<Item> half;
@@ -111,7 +102,7 @@ TEST_CASE("a build that finds a region full counts, and the next has other regio
 
 TEST_CASE("partitions that are too large for a work-group are counted in every build") {
     CELLIST_RANDOM(random, 953u);
-    const Device gpu = gpu_like();
+    const Device gpu = like_gpu();
     Lists<Item> lists(gpu, {5000}, {.storage = Storage::counted});
     Inserts<Item> hot = spread_over<Item>(5000, random);
     for (std::uint32_t i = 0; i < 2 * region_records; ++i)
@@ -125,7 +116,7 @@ TEST_CASE("partitions that are too large for a work-group are counted in every b
 
 TEST_CASE("more records than the pool has room for make it grow once") {
     CELLIST_RANDOM(random, 954u);
-    const Device gpu = gpu_like();
+    const Device gpu = like_gpu();
     Lists<Item> lists(gpu, {5000}, {.storage = Storage::counted});
     build_and_check(lists, gpu, spread_over<Item>(5000, random), 2);
     // The regions have room for a part more.
@@ -140,7 +131,7 @@ TEST_CASE("more records than the pool has room for make it grow once") {
 
 TEST_CASE("a budget without room for regions lets builds count") {
     CELLIST_RANDOM(random, 955u);
-    const Device gpu = gpu_like();
+    const Device gpu = like_gpu();
     Lists<Item> lists(
         gpu, {5000},
         {.storage = Storage::counted, .budget_bytes = std::uint64_t{region_records} * 16});

@@ -39,13 +39,29 @@ std::string record_declaration(const RecordKernels& kernels) {
     return "struct " + kernels.record().name + " value";
 }
 
+/// Work-items that gather values together, on GPUs.
+constexpr std::size_t gather_group = 128;
+
+/// Larger records are copied by each work-item alone.
+constexpr std::size_t gathered_bytes_most = 256;
+
+bool gathers_together(const RecordKernels& kernels) {
+    const DeviceInfo& device = kernels.owner()->info;
+    return (device.type & CL_DEVICE_TYPE_GPU) != 0 && device.local_memory_bytes >= 32768 &&
+           device.max_work_group_size >= gather_group &&
+           kernels.record().size <= gathered_bytes_most;
+}
+
 /// A kernel that reads lists. Lengths and copies are one program: who copies lists needs both, and
 /// a second program takes longer to compile than a second kernel.
 Kernel& reading_kernel(RecordKernels& kernels, const char* name, unsigned mode,
                        const std::string& declaration, const std::string& member) {
     return kernels.get(
         {{"lengths.cl", kernels::lengths_cl}, {"gather.cl", kernels::gather_cl}}, name, mode,
-        "#define CELLIST_VALUE " + declaration + "\n#define CELLIST_MEMBER " + member + "\n");
+        "#define CELLIST_VALUE " + declaration + "\n#define CELLIST_MEMBER " + member + "\n" +
+            (gathers_together(kernels)
+                 ? "#define CELLIST_GATHER_GROUP " + std::to_string(gather_group) + "u\n"
+                 : ""));
 }
 
 }  // namespace
@@ -235,7 +251,9 @@ void ListsCore::gather(std::uint64_t begin, std::uint64_t end, const Memory& off
     arguments.add(offsets.cl());
     arguments.add(values);
     reading_kernel(*kernels_, "cellist_gather", mode(), declaration, member)
-        .enqueue(Range::padded(end - begin), arguments);
+        .enqueue(gathers_together(*kernels_) ? Range::padded(end - begin, gather_group)
+                                             : Range::padded(end - begin),
+                 arguments);
 }
 
 void ListsCore::download(ReadbackFence& done, std::vector<cl_uint>& offsets,
