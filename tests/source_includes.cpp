@@ -2,6 +2,7 @@
 // runs.
 #include <filesystem>
 #include <fstream>
+#include <random>
 
 #include "device/device_state.hpp"
 #include "device/program_text.hpp"
