@@ -19,8 +19,30 @@ static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitLocatio
 // each are blended; OIT_LAYERS=K stops after the first K of a sorted list. With OIT_SORTED=N they
 // need not be sorted either, and *longer becomes 1 where one has N fragments or more.
 #ifdef OIT_SORTED
-#define OIT_NEAREST OIT_SORTED
 #define OIT_LONGER , global uint* longer
+
+// The nodes of a list in order, up to OIT_SORTED of them; returns how many. Their keys move, and
+// the nodes stay: other members matter only where keys are equal.
+static inline uint oit_sort_list(CELLIST_LISTS(OIT_NODE, fragments), uint cell, uint* nodes) {
+    uint keys[OIT_SORTED];
+    uint found = 0;
+    cellist_for_each(fragments, cell, node) {
+        if (found == OIT_SORTED) break;
+        const uint key = cellist_get(fragments, node).key;
+        uint at = found++;
+        for (; at > 0 && key <= keys[at - 1]; --at) {
+            if (key == keys[at - 1] &&
+                !cellist_record_before(cellist_get(fragments, node),
+                                       cellist_get(fragments, nodes[at - 1]), cellist_key_key))
+                break;
+            keys[at] = keys[at - 1];
+            nodes[at] = nodes[at - 1];
+        }
+        keys[at] = key;
+        nodes[at] = node;
+    }
+    return found;
+}
 #else
 #define OIT_LONGER
 #endif
@@ -30,15 +52,20 @@ kernel void oit_resolve_lists(CELLIST_LISTS(OIT_NODE, fragments) OIT_LONGER, OIT
     if (!oit_pixel(OIT_SCREEN_PASS, &pixel)) return;
     const uint cell = cellist_cell3(fragments, pixel.x, pixel.y, pixel.eye);
     OitBlendState blended = oit_blend_state();
-#ifdef OIT_NEAREST
-    struct OIT_NODE nearest[OIT_NEAREST];
-    uint found = cellist_nearest(fragments, cell, key, OIT_NEAREST, nearest);
 #ifdef OIT_SORTED
+    uint nodes[OIT_SORTED];
+    uint found = oit_sort_list(CELLIST_PASS(fragments), cell, nodes);
     if (found == OIT_SORTED) *longer = 1;
 #ifdef OIT_LAYERS
     found = min(found, (uint)OIT_LAYERS);
 #endif
-#endif
+    for (uint i = 0; i < found && !oit_done(&blended, &pixel); ++i) {
+        const OitFragment fragment = oit_unpack(&pixel.frame, cellist_get(fragments, nodes[i]));
+        oit_add(&blended, &pixel, &fragment);
+    }
+#elif defined(OIT_NEAREST)
+    struct OIT_NODE nearest[OIT_NEAREST];
+    const uint found = cellist_nearest(fragments, cell, key, OIT_NEAREST, nearest);
     for (uint i = 0; i < found && !oit_done(&blended, &pixel); ++i) {
         const OitFragment fragment = oit_unpack(&pixel.frame, nearest[i]);
         oit_add(&blended, &pixel, &fragment);

@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint32_t nearest_max = 16;
 
 // The longest lists that the reader sorts itself; longer ones are sorted before.
-constexpr std::uint32_t sorted_in_reader_max = 63;
+constexpr std::uint32_t sorted_in_reader_max = 127;
 
 ListReader blending_reader(const Quality& quality, bool needs_sorted, std::string defines = {}) {
     if (quality.layers) defines += define("OIT_LAYERS", *quality.layers);
