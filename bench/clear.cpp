@@ -5,11 +5,7 @@
 namespace bench {
 
 void add_clear(Suite& suite) {
-    std::vector<Workload> workloads = suite.workloads();
-    std::erase_if(workloads, [](const Workload& workload) {
-        return workload.distribution.id != BENCH_RANDOM || workload.node_bytes != 16;
-    });
-    add_cases(suite, "clear", workloads, storages(),
+    add_cases(suite, "clear", {suite.base(random)}, storages(),
               []<class Record>(const Suite& s, const Workload& workload,
                                const Configuration& configuration) {
                   Containers<Record> containers(s, workload, configuration);

@@ -33,11 +33,7 @@ void add_insert(Suite& suite) {
                  {"of_allocating_ceiling", samples[2].median / samples[0].median}}};
     };
     add_cases(suite, "insert", suite.workloads(), storages(), measure);
-
-    std::vector<Workload> bases;
-    for (const Distribution& distribution : distributions)
-        bases.push_back(suite.base(distribution));
-    add_cases(suite, "insert", bases, allocations(), measure);
+    add_cases(suite, "insert", suite.bases(), allocations(), measure);
 }
 
 }  // namespace bench

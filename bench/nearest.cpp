@@ -7,7 +7,7 @@ namespace bench {
 
 void add_nearest(Suite& suite) {
     add_cases(
-        suite, "nearest", random_and_coherent(suite.workloads(BENCH_READABLE_NODES)), storages(),
+        suite, "nearest", random_and_coherent(suite.bases(BENCH_READABLE_NODES)), storages(),
         []<class Record>(const Suite& s, const Workload& workload,
                          const Configuration& configuration) {
             constexpr cl_uint k = 8;

@@ -7,7 +7,7 @@ namespace bench {
 
 void add_pack(Suite& suite) {
     add_cases(
-        suite, "pack", random_and_coherent(suite.workloads(BENCH_READABLE_NODES)), storages(),
+        suite, "pack", random_and_coherent(suite.bases(BENCH_READABLE_NODES)), storages(),
         []<class Record>(const Suite& s, const Workload& workload,
                          const Configuration& configuration) {
             Containers<Record> containers(s, workload, configuration);

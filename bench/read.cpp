@@ -22,7 +22,7 @@ Result read(const Suite& suite, const Workload& workload, const Configuration& c
 }  // namespace
 
 void add_read(Suite& suite) {
-    add_cases(suite, "read", suite.workloads(BENCH_READABLE_NODES), storages(),
+    add_cases(suite, "read", suite.bases(BENCH_READABLE_NODES), storages(),
               []<class Record>(const Suite& s, const Workload& workload,
                                const Configuration& configuration) {
                   return read<Record>(s, workload, configuration);

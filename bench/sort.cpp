@@ -31,7 +31,7 @@ void check_sorted(const Suite& suite, const Workload& workload, cellist::Lists<R
 
 void add_sort(Suite& suite) {
     // Lists of one length each, beside the other workloads.
-    std::vector<Workload> workloads = suite.workloads(sortable_nodes);
+    std::vector<Workload> workloads = suite.bases(sortable_nodes);
     for (const cl_uint length : {8u, 16u, 32u, 64u, 1024u}) {
         workloads.push_back(suite.base(coherent));
         workloads.back().occupancy = length;

@@ -46,14 +46,7 @@ template <class Record>
 Result build_read(const Suite& suite, const Workload& workload, const Configuration& configuration,
                   Input input) {
     BuildRead<Record> work(suite, workload, configuration, input);
-    const std::vector<Samples> samples = sample(suite.sampling(), [&]() -> std::vector<double> {
-        const auto [build, read] = work.run();
-        return {build + read, build, read};
-    });
-    return {samples[0],
-            double(workload.nodes),
-            0,
-            {{"build_ms", 1e3 * samples[1].median}, {"read_ms", 1e3 * samples[2].median}}};
+    return build_and_read(suite.sampling(), workload.nodes, [&] { return work.run(); });
 }
 
 /// Calls `use` with each automatic storage and each storage that it may choose, by position.
@@ -135,7 +128,7 @@ std::vector<Workload> storage_grid(const Suite& suite) {
 }  // namespace
 
 void add_storage(Suite& suite) {
-    add_cases(suite, "build_read/input:generated", suite.readable_bases(), storages(),
+    add_cases(suite, "build_read/input:generated", suite.sorted_workloads(), storages(),
               []<class Record>(const Suite& s, const Workload& workload,
                                const Configuration& configuration) {
                   return build_read<Record>(s, workload, configuration, Input::generated);

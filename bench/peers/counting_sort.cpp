@@ -124,7 +124,7 @@ public:
         lists_.offsets[workload.cells()] = workload.nodes;
     }
 
-    double operator()(std::vector<cl_uint>& digests) {
+    std::pair<double, double> operator()(std::vector<cl_uint>& digests) {
         const auto begin = std::chrono::steady_clock::now();
         std::barrier barrier(static_cast<std::ptrdiff_t>(threads_));
         in_parallel(threads_, workload_.nodes,
@@ -136,8 +136,9 @@ public:
                         prefix_sums_.run(thread, counts_, lists_.offsets.data(), barrier);
                         scatter(first, last, counts);
                     });
+        const double build = seconds_since(begin);
         read(lists_, digests, threads_);
-        return seconds_since(begin);
+        return {build, seconds_since(begin) - build};
     }
 
 private:
@@ -205,7 +206,7 @@ public:
         lists_.offsets[workload.cells()] = workload.nodes;
     }
 
-    double operator()(std::vector<cl_uint>& digests) {
+    std::pair<double, double> operator()(std::vector<cl_uint>& digests) {
         const auto begin = std::chrono::steady_clock::now();
         std::barrier barrier(static_cast<std::ptrdiff_t>(threads_));
         std::atomic<std::size_t> next_partition = 0;
@@ -224,8 +225,9 @@ public:
                              p = next_partition++)
                             count_partition(p, places);
                     });
+        const double build = seconds_since(begin);
         read(lists_, digests, threads_);
-        return seconds_since(begin);
+        return {build, seconds_since(begin) - build};
     }
 
 private:
@@ -298,16 +300,17 @@ private:
     Lists lists_;
 };
 
+/// Sorts, reads, and returns the seconds of both.
+using Sorter = std::function<std::pair<double, double>(std::vector<cl_uint>&)>;
+
 template <template <class> class Sort, class Input>
-std::function<double(std::vector<cl_uint>&)> sorter(const Workload& workload, unsigned threads,
-                                                    Input input) {
+Sorter sorter(const Workload& workload, unsigned threads, Input input) {
     return [sort = std::make_shared<Sort<Input>>(workload, threads, std::move(input))](
                std::vector<cl_uint>& digests) { return (*sort)(digests); };
 }
 
 template <template <class> class Sort>
-std::function<double(std::vector<cl_uint>&)> generating(const Workload& workload,
-                                                        unsigned threads) {
+Sorter generating(const Workload& workload, unsigned threads) {
     switch (workload.distribution.id) {
         case BENCH_COHERENT:
             return sorter<Sort>(workload, threads, Generated<BENCH_COHERENT>{workload.cells()});

@@ -11,8 +11,8 @@
 //     cub_values     with the rest of the record as value
 //     cub_gather     with indices as values, then the rests gathered by them
 //
-// Host time from the first launch until the device is done. The input is in memory, and temporary
-// memory is allocated before. The results of each case are checked once, before it is timed. Cases
+// Host time from the first launch until the device is done. Each run of sort_path reads once more,
+// to time the read alone. The input is in memory, and temporary memory is allocated before. The results of each case are checked once, before it is timed. Cases
 // that do not fit on the device are left out, and named on stderr. The JSON names those that fail,
 // and the exit status is then 1.
 
@@ -23,6 +23,7 @@
 #include <cstdlib>
 #include <exception>
 #include <functional>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -169,6 +170,12 @@ struct Sampling {
     double seconds = 0.3;
 };
 
+double median(std::vector<double> seconds) {
+    std::sort(seconds.begin(), seconds.end());
+    const std::size_t middle = seconds.size() / 2;
+    return seconds.size() % 2 == 1 ? seconds[middle] : (seconds[middle - 1] + seconds[middle]) / 2;
+}
+
 /// Prints the cases in the form of Google Benchmark.
 class Report {
 public:
@@ -186,17 +193,19 @@ public:
     }
     ~Report() { std::printf("\n  ]\n}\n"); }
 
-    void add(const std::string& name, std::vector<double> seconds, std::uint32_t nodes) {
-        std::sort(seconds.begin(), seconds.end());
-        const std::size_t middle = seconds.size() / 2;
-        const double median =
-            seconds.size() % 2 == 1 ? seconds[middle] : (seconds[middle - 1] + seconds[middle]) / 2;
+    /// `counters` are further seconds of each run, by the name of their median in milliseconds.
+    void add(const std::string& name, const std::vector<double>& seconds, std::uint32_t nodes,
+             const std::map<std::string, std::vector<double>>& counters = {}) {
+        const auto [least, greatest] = std::minmax_element(seconds.begin(), seconds.end());
         begin(name);
         std::printf(
             "\"real_time\": %.6f, \"time_unit\": \"ms\", \"items_per_second\": %.6g, "
-            "\"least_ms\": %.6f, \"greatest_ms\": %.6f, \"samples\": %zu}",
-            1e3 * median, nodes / median, 1e3 * seconds.front(), 1e3 * seconds.back(),
+            "\"least_ms\": %.6f, \"greatest_ms\": %.6f, \"samples\": %zu",
+            1e3 * median(seconds), nodes / median(seconds), 1e3 * *least, 1e3 * *greatest,
             seconds.size());
+        for (const auto& counter : counters)
+            std::printf(", \"%s\": %.6f", counter.first.c_str(), 1e3 * median(counter.second));
+        std::printf("}");
         std::fflush(stdout);
     }
 
@@ -236,14 +245,15 @@ double host_seconds(const std::function<void()>& work) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-std::vector<double> sample(const Sampling& sampling, const std::function<void()>& work) {
+/// Calls `run` as often as `sampling` says. Each call returns the seconds of one run.
+std::vector<double> sample(const Sampling& sampling, const std::function<double()>& run) {
     const auto begin = std::chrono::steady_clock::now();
     std::vector<double> seconds;
     while (seconds.size() < sampling.least ||
            (seconds.size() < sampling.most &&
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() <
                 sampling.seconds))
-        seconds.push_back(host_seconds(work));
+        seconds.push_back(run());
     return seconds;
 }
 
@@ -275,13 +285,26 @@ struct SortPath {
     }
 
     void measure(Report& report, const Sampling& sampling, const std::string& peer,
-                 const std::function<void()>& work) {
+                 const std::function<void()>& build, const std::function<void()>& read) {
         const std::string name = "sort_path/peer:" + peer + "/" + workload.name();
         report.attempt(name, [&] {
             CHECK(cudaMemset(digests.get(), 0, workload.cells() * sizeof(std::uint32_t)));
-            host_seconds(work);
+            std::vector<double> builds, reads;
+            const auto run = [&] {
+                const double both = host_seconds([&] {
+                    build();
+                    read();
+                });
+                reads.push_back(host_seconds(read));
+                builds.push_back(both - reads.back());
+                return both;
+            };
+            run();
             compare(digests, expected, workload.cells());
-            report.add(name, sample(sampling, work), workload.nodes);
+            builds.clear();
+            reads.clear();
+            const std::vector<double> seconds = sample(sampling, run);
+            report.add(name, seconds, workload.nodes, {{"build_ms", builds}, {"read_ms", reads}});
         });
     }
 
@@ -310,12 +333,16 @@ void sort_values(Report& report, const Sampling& sampling, const Workload& w, co
     };
     std::size_t bytes = temporary_bytes(sort);
     Buffer<char> memory(bytes);
-    path.measure(report, sampling, peer, [&] {
-        CHECK(sort(memory.get(), bytes));
-        path.bounds();
-        read<<<groups(w.cells()), group>>>(path.offsets.get(), values.get(), path.digests.get(),
-                                           w.cells());
-    });
+    path.measure(
+        report, sampling, peer,
+        [&] {
+            CHECK(sort(memory.get(), bytes));
+            path.bounds();
+        },
+        [&] {
+            read<<<groups(w.cells()), group>>>(path.offsets.get(), values.get(), path.digests.get(),
+                                               w.cells());
+        });
 }
 
 void sort_indices(Report& report, const Sampling& sampling, const Workload& w) {
@@ -332,19 +359,28 @@ void sort_indices(Report& report, const Sampling& sampling, const Workload& w) {
     };
     std::size_t bytes = temporary_bytes(sort);
     Buffer<char> memory(bytes);
-    path.measure(report, sampling, "cub_gather", [&] {
-        CHECK(sort(memory.get(), bytes));
-        gather<<<groups(w.nodes), group>>>(indices.get(), records.get(), gathered.get(), w.nodes);
-        path.bounds();
-        read<<<groups(w.cells()), group>>>(path.offsets.get(), gathered.get(), path.digests.get(),
-                                           w.cells());
-    });
-    path.measure(report, sampling, "cub_index", [&] {
-        CHECK(sort(memory.get(), bytes));
-        path.bounds();
-        read_indexed<<<groups(w.cells()), group>>>(path.offsets.get(), indices.get(), records.get(),
-                                                   path.digests.get(), w.cells());
-    });
+    path.measure(
+        report, sampling, "cub_gather",
+        [&] {
+            CHECK(sort(memory.get(), bytes));
+            gather<<<groups(w.nodes), group>>>(indices.get(), records.get(), gathered.get(),
+                                               w.nodes);
+            path.bounds();
+        },
+        [&] {
+            read<<<groups(w.cells()), group>>>(path.offsets.get(), gathered.get(),
+                                               path.digests.get(), w.cells());
+        });
+    path.measure(
+        report, sampling, "cub_index",
+        [&] {
+            CHECK(sort(memory.get(), bytes));
+            path.bounds();
+        },
+        [&] {
+            read_indexed<<<groups(w.cells()), group>>>(
+                path.offsets.get(), indices.get(), records.get(), path.digests.get(), w.cells());
+        });
 }
 
 /// Contiguous lists in the order of insertion: list c holds the records c, c + cells, ...
@@ -403,7 +439,7 @@ void sort_segments(Report& report, const Sampling& sampling, const Workload& w, 
         count_unsorted<<<groups(sorted), group>>>(sorted_keys.get(), sorted, length,
                                                   unsorted.get());
         compare(unsorted, none, 1);
-        report.add(name, sample(sampling, work), w.nodes);
+        report.add(name, sample(sampling, [&] { return host_seconds(work); }), w.nodes);
     });
 }
 
@@ -442,6 +478,7 @@ std::uint32_t number(const std::string& text) {
 int main(int argc, char** argv) try {
     std::uint32_t nodes = 1u << 26, occupancy = 16;
     Sampling sampling;
+    bool full = false;
     for (int i = 1; i < argc; ++i) {
         const std::string argument = argv[i];
         const std::string value =
@@ -458,7 +495,9 @@ int main(int argc, char** argv) try {
             CHECK(cudaSetDevice(device));
         } else if (argument == "--effort=tiny")
             sampling = {1, 1, 0};
-        else if (argument != "--effort=quick" && argument != "--effort=full") {
+        else if (argument == "--effort=full")
+            full = true;
+        else if (argument != "--effort=quick") {
             std::fprintf(stderr,
                          "usage: cellist_bench_cub [--nodes=N] [--occupancy=K] "
                          "[--effort=tiny|quick|full] [--bus=DOMAIN:BUS:DEVICE.FUNCTION]\n");
@@ -466,13 +505,21 @@ int main(int argc, char** argv) try {
         }
     }
 
+    // Full effort adds the same cells with a quarter of the records.
+    std::vector<Workload> workloads;
+    for (const std::uint32_t divisor : {1u, 4u}) {
+        if (divisor > 1 && (!full || occupancy < divisor)) continue;
+        const std::uint32_t a_cell = occupancy / divisor, all = nodes / divisor;
+        for (const Workload& base : {Workload{"random", BENCH_RANDOM, a_cell, all},
+                                     Workload{"coherent", BENCH_COHERENT, a_cell, all},
+                                     Workload{"runs", BENCH_RUNS, a_cell, all},
+                                     Workload{"skewed", BENCH_SKEWED, a_cell, all},
+                                     Workload{"hot", BENCH_HOT, a_cell, all}})
+            workloads.push_back(base.readable());
+    }
+
     Report report;
-    for (const Workload& base : {Workload{"random", BENCH_RANDOM, occupancy, nodes},
-                                 Workload{"coherent", BENCH_COHERENT, occupancy, nodes},
-                                 Workload{"runs", BENCH_RUNS, occupancy, nodes},
-                                 Workload{"skewed", BENCH_SKEWED, occupancy, nodes},
-                                 Workload{"hot", BENCH_HOT, occupancy, nodes}}) {
-        const Workload w = base.readable();
+    for (const Workload& w : workloads) {
         if (!fits(w)) continue;
         report.attempt("sort_path/peer:cub_values/" + w.name(),
                        [&] { sort_values<Record>(report, sampling, w, "cub_values"); });

@@ -116,7 +116,7 @@ Array<Item> items_of(const Workload& workload);
 
 /// Adds a case "sort_path/peer:<name>/..." for each peer workload for which the machine has room.
 /// `prepare(workload)` returns a function. That function makes the lists, reads them into the
-/// digests of its argument, and returns the seconds that it took.
+/// digests of its argument, and returns the seconds of both.
 template <class Prepare>
 void add_sort_path(Suite& suite, const std::string& name, const Prepare& prepare) {
     for (const Workload& workload : suite.readable_bases()) {
@@ -128,8 +128,7 @@ void add_sort_path(Suite& suite, const std::string& name, const Prepare& prepare
             std::vector<cl_uint> digests(workload.cells());
             run(digests);
             check_digests(digests, expected(workload).digests);
-            return {sample(suite.sampling(), [&] { return run(digests); }), double(workload.nodes),
-                    0};
+            return build_and_read(suite.sampling(), workload.nodes, [&] { return run(digests); });
         });
     }
 }

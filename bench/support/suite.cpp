@@ -42,6 +42,18 @@ private:
 
 }  // namespace
 
+Result build_and_read(const Sampling& sampling, double nodes,
+                      const std::function<std::pair<double, double>()>& run) {
+    const std::vector<Samples> samples = sample(sampling, [&]() -> std::vector<double> {
+        const auto [build, read] = run();
+        return {build + read, build, read};
+    });
+    return {samples[0],
+            nodes,
+            0,
+            {{"build_ms", 1e3 * samples[1].median}, {"read_ms", 1e3 * samples[2].median}}};
+}
+
 Suite::Suite(const cellist::Device& device, Effort effort, cl_uint nodes, cl_uint occupancy,
              unsigned threads)
     : device_(device), effort_(effort), nodes_(nodes), occupancy_(occupancy), threads_(threads) {
@@ -62,17 +74,34 @@ Workload Suite::base(const Distribution& distribution) const {
     return {.distribution = distribution, .occupancy = occupancy_, .nodes = nodes_};
 }
 
-std::vector<Workload> Suite::readable_bases() const {
+std::vector<Workload> Suite::bases(double longest) const {
     std::vector<Workload> all;
     for (const Distribution& distribution : distributions)
-        all.push_back(readable(base(distribution)));
+        if (const Workload base = this->base(distribution); base.longest() <= longest)
+            all.push_back(base);
+    return all;
+}
+
+std::vector<Workload> Suite::readable_bases() const {
+    std::vector<Workload> all = bases();
+    std::transform(all.begin(), all.end(), all.begin(), readable);
+    return all;
+}
+
+std::vector<Workload> Suite::sorted_workloads() const {
+    std::vector<Workload> all = readable_bases();
+    if (effort_ != Effort::full || occupancy_ < 4) return all;
+    for (Workload workload : bases()) {
+        workload.nodes /= 4;
+        workload.occupancy /= 4;
+        all.push_back(readable(workload));
+    }
     return all;
 }
 
 std::vector<Workload> Suite::workloads() const {
     std::vector<Workload> all;
-    for (const Distribution& distribution : distributions) {
-        const Workload base = this->base(distribution);
+    for (const Workload& base : bases()) {
         const auto add = [&](cl_uint Workload::*member, cl_uint value) {
             all.push_back(base);
             all.back().*member = value;
@@ -80,18 +109,10 @@ std::vector<Workload> Suite::workloads() const {
         all.push_back(base);
         if (effort_ != Effort::full) continue;
         for (cl_uint bits = 12; bits <= 26; bits += 2) add(&Workload::nodes, 1u << bits);
-        if (distribution.id != BENCH_RANDOM && distribution.id != BENCH_COHERENT) continue;
+        if (random_and_coherent({base}).empty()) continue;
         for (const cl_uint bytes : {8u, 32u}) add(&Workload::node_bytes, bytes);
         for (const cl_uint occupancy : {1u, 4u, 64u}) add(&Workload::occupancy, occupancy);
     }
-    return all;
-}
-
-std::vector<Workload> Suite::workloads(double longest) const {
-    std::vector<Workload> all = workloads();
-    std::erase_if(all, [&](const Workload& workload) {
-        return workload.longest() > longest || workload.nodes / 4 > nodes_;
-    });
     return all;
 }
 

@@ -2,8 +2,10 @@
 
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <cellist/cellist.hpp>
@@ -28,6 +30,11 @@ struct Result {
     std::map<std::string, double> counters = {};
 };
 
+/// The result of a build and a read of `nodes` records. `run` returns the seconds of both. The time
+/// of the case is their sum. The counters build_ms and read_ms are the medians of each.
+[[nodiscard]] Result build_and_read(const Sampling& sampling, double nodes,
+                                    const std::function<std::pair<double, double>()>& run);
+
 /// The device, the effort, and the cases. Each file of benchmarks adds its cases. Google Benchmark
 /// runs and reports them.
 class Suite {
@@ -47,15 +54,18 @@ public:
 
     /// The workload of the ratios.
     [[nodiscard]] Workload base(const Distribution& distribution) const;
+    /// The base workload with each distribution, unless a list is longer than `longest`.
+    [[nodiscard]] std::vector<Workload> bases(
+        double longest = std::numeric_limits<double>::infinity()) const;
     /// The base workload with each distribution, for comparison with peers. It is halved until one
     /// work-item can traverse each list.
     [[nodiscard]] std::vector<Workload> readable_bases() const;
+    /// For comparison with sorts on the same device: readable_bases(). Full effort adds the same
+    /// cells with a quarter of the records.
+    [[nodiscard]] std::vector<Workload> sorted_workloads() const;
     /// The base workload with each distribution. Full effort adds each size from 2^12 to 2^26. For
     /// random and coherent cells, it also adds each node size and several occupancies.
     [[nodiscard]] std::vector<Workload> workloads() const;
-    /// The workloads of up to four times the base without a longer list. They are for traversals,
-    /// which are slow at the largest sizes on a processor.
-    [[nodiscard]] std::vector<Workload> workloads(double longest) const;
 
     /// Adds a case. `measure` sets up, checks the results once, and measures. If it throws, the
     /// case fails. A second case of the same name is left out.
