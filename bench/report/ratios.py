@@ -5,26 +5,43 @@ and `theirs` describe what was compared. A value is None if it was not measured.
 this kind of device has none.
 """
 
+import re
+
 from figures import fastest, power_of_two, select
 
 LENGTHS = (8, 16, 32, 64)
 DISTRIBUTIONS = ("random", "coherent", "runs", "skewed", "hot")
 
-# name -> (case or None for all, {kind of device: goal}); the most special case comes first.
+# name -> (what a case begins with, or None for all; {kind of device: goal}).
 GOALS = {
-    "insert_vs_ceiling": [("random", {"gpu": 0.95, "cpu": 0.75}), ("coherent", {"gpu": 0.92, "cpu": 0.75})],
-    "insert_vs_ceiling_runs": [(None, {"gpu": 2.0, "cpu": 0.75})],
+    "insert_vs_ceiling": [("random", {"gpu": 0.95, "cpu": 0.75}), ("coherent", {"gpu": 0.92, "cpu": 0.80})],
+    "insert_vs_ceiling_runs": [(None, {"gpu": 1.65, "cpu": 0.80})],
     "insert_vs_global_counter": [(None, {"gpu": 6, "cpu": 4})],
     "insert_hot_vs_global_counter": [(None, {"gpu": 20, "cpu": 2})],
-    "build_read_vs_sort": [
-        ("random", {"gpu": 1.25, "cpu": 10}),
-        ("coherent", {"gpu": 4, "cpu": 10}),
-        ("runs", {"gpu": 3, "cpu": 10}),
+    "build_counted_vs_sort": [
+        ("random", {"gpu": 1.2, "cpu": 10}),
+        ("coherent", {"gpu": 1.6, "cpu": 3}),
+        ("runs", {"gpu": 2.0, "cpu": 4}),
     ],
-    "build_read_vs_cpp": [(case, {"cpu": 1.0}) for case in ("random", "coherent", "runs")],
+    "build_read_vs_sort": [
+        ("random", {"gpu": 1.35, "cpu": 10}),
+        ("coherent", {"gpu": 2.0, "cpu": 4}),
+        ("runs", {"gpu": 2.0, "cpu": 4}),
+        ("skewed", {"gpu": 1.2, "cpu": 5}),
+        ("hot", {"gpu": 1.2, "cpu": 1.5}),
+    ],
+    "build_read8_vs_sort": [(None, {"gpu": 1.5, "cpu": 3})],
+    "build_read_vs_cpp": [
+        ("random", {"cpu": 1.0}),
+        ("coherent", {"cpu": 1.0}),
+        ("runs", {"cpu": 1.0}),
+        ("skewed", {"cpu": 0.6}),
+        ("hot", {"cpu": 0.6}),
+    ],
     "sort_vs_segmented_sort": [(None, {"gpu": 2, "cpu": 1.5})],
-    "auto_vs_best": [(None, {"gpu": 1.10, "cpu": 1.10})],
-    "small_build_us": [(None, {"gpu": 25, "cpu": 250})],
+    "pack_vs_sort": [(None, {"gpu": 1, "cpu": 3})],
+    "auto_vs_best": [("worst", {"gpu": 1.10, "cpu": 1.20}), ("all together", {"cpu": 1.03})],
+    "small_build_us": [(None, {"gpu": 20, "cpu": 100})],
 }
 LOWER_IS_BETTER = ("auto_vs_best", "small_build_us")
 
@@ -56,17 +73,26 @@ def is_choice(figure, storage):
 
 
 def _goal(name, case, kind):
-    for goal_case, goals in GOALS[name]:
-        if goal_case in (None, case):
+    for beginning, goals in GOALS[name]:
+        if beginning is None or re.match(rf"{beginning}\b", case):
             return goals.get(kind)
     return None
 
 
+def _title(figure):
+    what = [str(figure[key]) for key in ("peer", "storage", "allocation", "input") if key in figure]
+    return " ".join(what) or figure["name"]
+
+
 def _described(figure):
     """A measurement with its median, least and greatest time."""
-    what = [str(figure[key]) for key in ("peer", "storage", "allocation", "input") if key in figure]
-    return (f"{' '.join(what) or figure['name']} {figure['time_ms']:.4g} ms "
-            f"({figure['least_ms']:.3g} to {figure['greatest_ms']:.3g})")
+    return f"{_title(figure)} {figure['time_ms']:.4g} ms ({figure['least_ms']:.3g} to {figure['greatest_ms']:.3g})"
+
+
+def _with_reads(figures, reads):
+    """The figures that have separate times of a build and a read, as (ms, figure). The time is that
+    of a build and this number of reads."""
+    return [(f["build_ms"] + reads * f["read_ms"], f) for f in figures if "build_ms" in f]
 
 
 class _Run:
@@ -74,7 +100,8 @@ class _Run:
         self.figures = results["figures"]
         self.kind = results["kind"]
         self.nodes = results["nodes"]
-        self.base = {"node_bytes": 16, "occupancy": results["occupancy"], "nodes": self.nodes}
+        self.occupancy = results["occupancy"]
+        self.base = {"node_bytes": 16, "occupancy": self.occupancy, "nodes": self.nodes}
         self.ratios = []
 
     def at_base(self, name, **labels):
@@ -104,40 +131,89 @@ class _Run:
             self.add(name, case, None)
 
     def of_ceiling(self, name, distribution):
-        insert = self.insert(distribution)
-        if insert:
-            self.add(name, distribution, insert["of_ceiling"], _described(insert),
-                     f"exchange and store {insert['ceiling_ms']:.4g} ms")
+        """Against the same exchanges and stores. On a GPU, the ceiling that counts has the least
+        allocation that a GPU can make. Threads of a processor take blocks of nodes instead."""
+        insert = self.insert(distribution) or {}
+
+        def add(case, prefix, title, has_goal):
+            value = insert.get(f"of_{prefix}ceiling")
+            if value is not None:
+                self.add(name, case, value, _described(insert), f"{title} {insert[f'{prefix}ceiling_ms']:.4g} ms",
+                         has_goal)
+            elif has_goal:
+                self.add(name, case, None)
+
+        if self.kind == "gpu":
+            add(distribution, "allocating_", "allocate, exchange and store", has_goal=True)
+            add(f"{distribution}, ceiling without an allocation", "", "exchange and store", has_goal=False)
         else:
-            self.add(name, distribution, None)
+            add(distribution, "", "exchange and store", has_goal=True)
 
-    def in_order(self, name, distribution):
-        """Against the same stores and exchange in the order of an insert."""
-        insert = self.insert(distribution)
-        if insert and "of_in_order" in insert:
-            self.add(name, f"{distribution}, in an insert's order", insert["of_in_order"], _described(insert),
-                     f"store, exchange, link {insert['in_order_ms']:.4g} ms", has_goal=False)
+    def compare_least(self, name, case, ours, theirs):
+        """Adds the ratio of the least time of theirs to that of ours. Both are (ms, figure)."""
+        def least(times):
+            return min(times, key=lambda pair: pair[0], default=None)
 
-    def build_read(self, name, peers):
-        """Against the best of the peers, in two ways. First cellist's kernel computes its input,
-        and peers compute theirs or find it in memory, whichever is faster. Then all input is in
-        memory. Distributions with long lists have fewer records, so that one work-item can read
-        each list."""
-        for distribution in DISTRIBUTIONS:
-            found = select(self.figures, "build_read", distribution=distribution)
-            nodes = found[0]["nodes"] if found else self.nodes
-            case = distribution if nodes == self.nodes else f"{distribution}, {power_of_two(nodes)} nodes"
-            theirs = [f for f in self.at_base("sort_path", distribution=distribution, nodes=nodes) if peers(f)]
-            ours = self.at_base("build_read", distribution=distribution, input="generated", nodes=nodes)
-            self.compare(name, case, fastest(ours), fastest(theirs))
-            ours = self.at_base("build_read", distribution=distribution, input="stored", nodes=nodes)
-            theirs = [f for f in theirs if f.get("input") != "generated"]
-            self.compare(name, f"{case}, input in memory", fastest(ours), fastest(theirs), has_goal=False)
+        ours, theirs = least(ours), least(theirs)
+        if ours and theirs:
+            self.add(name, case, theirs[0] / ours[0],
+                     *(f"{_title(figure)} {ms:.4g} ms" for ms, figure in (ours, theirs)))
+        else:
+            self.add(name, case, None)
+
+    def built_and_read(self, distribution, occupancy, peers):
+        """The name of the case, and the figures of cellist and of these peers. Distributions with
+        long lists have fewer records, so that one work-item can read each list."""
+        labels = {"distribution": distribution, "occupancy": occupancy}
+        found = select(self.figures, "build_read", input="generated", **labels)
+        as_base = self.nodes * occupancy // self.occupancy
+        labels["nodes"] = found[0]["nodes"] if found else as_base
+        case = distribution
+        if labels["nodes"] != as_base:
+            case += f", {power_of_two(labels['nodes'])} nodes"
+        if occupancy != self.occupancy:
+            case += f", {occupancy} a cell"
+        theirs = [f for f in self.at_base("sort_path", **labels) if peers(f)]
+        return case, self.at_base("build_read", **labels), theirs
+
+    def build_read(self, name, peers, occupancies):
+        """Against the best of the peers. cellist's kernel computes its input, and peers compute
+        theirs or find it in memory, whichever is faster. At the base, a second ratio has all
+        input in memory."""
+        for occupancy in occupancies:
+            for distribution in DISTRIBUTIONS:
+                case, ours, theirs = self.built_and_read(distribution, occupancy, peers)
+                self.compare(name, case, fastest(select(ours, "build_read", input="generated")), fastest(theirs))
+                self.compare(name, f"{case}, input in memory",
+                             fastest(select(ours, "build_read", input="stored")),
+                             fastest([f for f in theirs if f.get("input") != "generated"]), has_goal=False)
+
+    def build_read8(self, name, peers, occupancies):
+        """The same with eight reads."""
+        for occupancy in occupancies:
+            for distribution in DISTRIBUTIONS:
+                case, ours, theirs = self.built_and_read(distribution, occupancy, peers)
+                self.compare_least(name, case, _with_reads(select(ours, "build_read", input="generated"), 8),
+                                   _with_reads(theirs, 8))
+
+    def build_counted(self, name, peers):
+        """Builds of Storage::counted against sorts with bounds, without a read."""
+        for distribution in ("random", "coherent", "runs"):
+            case, ours, theirs = self.built_and_read(distribution, self.occupancy, peers)
+            counted = select(ours, "build_read", input="generated", storage="counted")
+            self.compare_least(name, case, _with_reads(counted, 0), _with_reads(theirs, 0))
+
+    def pack(self, name, peers):
+        """A packed copy of linked lists against a sort with bounds."""
+        pack = self.at_base("pack", storage="linked", distribution="random")
+        theirs = self.built_and_read("random", self.occupancy, peers)[2]
+        self.compare_least(name, "linked, random", [(f["time_ms"], f) for f in pack], _with_reads(theirs, 0))
 
     def automatic(self):
-        """Storage::automatic against the best storage, in the worst case of the grid: 25 workloads
-        by two numbers of expected reads."""
+        """Storage::automatic against the best storage in a grid of 25 workloads by two numbers of
+        expected reads: the worst case, and the sum of all times."""
         worst = None
+        automatic_ms = best_ms = 0
         for figure in select(self.figures, "storage"):
             for reads in (1, 8):
                 automatic = f"automatic_{reads}"
@@ -148,6 +224,8 @@ class _Run:
                 ratio = {s: figure.get(f"{automatic}_to_{s}", times[automatic] / times[s])
                          for s in times if is_choice(figure, s)}
                 best = max(ratio, key=ratio.get)
+                automatic_ms += times[automatic]
+                best_ms += times[automatic] / ratio[best]
                 if worst is None or ratio[best] > worst[0]:
                     case = (f"{figure['distribution']}, {figure['nodes']} nodes, {figure['occupancy']} a cell, "
                             f"{reads} reads")
@@ -155,8 +233,12 @@ class _Run:
                              f"{best} {times[best]:.4g} ms")
         if worst:
             self.add("auto_vs_best", "worst: " + worst[1], worst[0], worst[2], worst[3])
+            self.add("auto_vs_best", "all together", automatic_ms / best_ms, f"automatic {automatic_ms:.4g} ms",
+                     f"best {best_ms:.4g} ms")
         else:
-            self.add("auto_vs_best", "worst", None)
+            for case in ("worst", "all together"):
+                if _goal("auto_vs_best", case, self.kind) is not None:
+                    self.add("auto_vs_best", case, None)
 
 
 def compute(results):
@@ -165,22 +247,31 @@ def compute(results):
     for distribution in ("random", "coherent"):
         run.of_ceiling("insert_vs_ceiling", distribution)
     run.of_ceiling("insert_vs_ceiling_runs", "runs")
-    for distribution in ("random", "coherent"):
-        run.in_order("insert_vs_ceiling", distribution)
-    run.in_order("insert_vs_ceiling_runs", "runs")
     for name, distribution in (("insert_vs_global_counter", "coherent"), ("insert_hot_vs_global_counter", "hot")):
         run.compare(name, distribution, run.insert(distribution), run.insert(distribution, "global"))
 
     device_peer = "cub" if results["platform"] == "NVIDIA CUDA" else "boost_compute"
-    run.build_read("build_read_vs_sort", lambda figure: figure["peer"].startswith(device_peer))
+
+    def sorts(figure):
+        return figure["peer"].startswith(device_peer)
+
+    def cpp(figure):
+        return "input" in figure or figure["peer"] in ("std_sort", "parallel_sort")
+
+    # A full run has the base, and fewer records in the same cells.
+    occupancies = sorted({run.occupancy, *(f["occupancy"] for f in select(run.figures, "build_read"))}, reverse=True)
+    run.build_counted("build_counted_vs_sort", sorts)
+    run.build_read("build_read_vs_sort", sorts, occupancies)
+    run.build_read8("build_read8_vs_sort", sorts, occupancies)
     if run.kind == "cpu":
-        run.build_read("build_read_vs_cpp", lambda figure: "input" in figure or figure["peer"] in ("std_sort", "parallel_sort"))
+        run.build_read("build_read_vs_cpp", cpp, [run.occupancy])
 
     for length in LENGTHS:
         labels = {"distribution": "coherent", "node_bytes": 16, "occupancy": length, "nodes": results["nodes"]}
         run.compare("sort_vs_segmented_sort", f"lists of {length}",
                     fastest(select(run.figures, "sort", **labels)),
                     fastest(select(run.figures, "segmented_sort", **labels)))
+    run.pack("pack_vs_sort", sorts)
     run.automatic()
     small = fastest(select(run.figures, "small_build"))
     run.add("small_build_us", "4096 nodes, 64 x 64 cells", 1e3 * small["time_ms"] if small else None,

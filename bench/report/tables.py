@@ -27,6 +27,11 @@ def _goal(ratio):
     return "" if ratio["goal"] is None else f"{sign} {ratio['goal']:g}"
 
 
+def _case(ratio):
+    """The case without what differs from run to run."""
+    return "worst" if ratio["case"].startswith("worst") else ratio["case"]
+
+
 _MARKS = {True: "met", False: "MISSED", None: ""}
 
 
@@ -54,7 +59,7 @@ def ratios_as_markdown(all_results):
     cases = []
     for results in all_results:
         for ratio in results["ratios"]:
-            case = (ratio["name"], "" if ratio["case"].startswith("worst") else ratio["case"])
+            case = (ratio["name"], _case(ratio))
             if case not in cases:
                 cases.append(case)
     cases.sort(key=lambda case: list(GOALS).index(case[0]))
@@ -64,7 +69,7 @@ def ratios_as_markdown(all_results):
         cells = []
         for results in all_results:
             ratio = next((r for r in results["ratios"]
-                          if r["name"] == name and (r["case"] == case or not case)), None)
+                          if r["name"] == name and _case(r) == case), None)
             if ratio is None:
                 cells += ["–", "–"]
                 continue
@@ -147,7 +152,7 @@ def times_as_markdown(all_results):
         if any(figures):
             lines.append(f"| {title} | " + " | ".join(map(cell, figures)) + " |")
 
-    for operation in ("copy", "store", "exchange", "exchange_and_store"):
+    for operation in ("copy", "store", "exchange", "exchange_and_store", "allocate_exchange_and_store"):
         add(f"ceiling: {operation.replace('_', ' ')}",
             [_base(r, "ceiling", operation=operation, distribution="random") for r in all_results])
     for name in ("insert", "build", "read", "sort", "nearest", "pack", "clear"):
