@@ -10,6 +10,7 @@ import re
 import figures
 import oit_tables
 import plots
+import ratios
 import tables
 import whole_files
 
@@ -56,6 +57,9 @@ def _contents():
     paths = set((ROOT / "bench/results").glob("*.json"))
     oit_paths = {path for path in paths if path.stem.startswith("oit-")}
     runs, oit_runs = _runs(paths - oit_paths), _runs(oit_paths)
+    for results in runs:
+        # Goals may have changed since the file was written.
+        results["ratios"] = ratios.compute(results)
     generated = {name: table(runs) for name, table in TABLES.items()}
     generated.update({name: table(oit_runs) for name, table in oit_tables.TABLES.items()})
     contents = {}

@@ -19,7 +19,7 @@ namespace bench {
 enum class Effort {
     tiny,   ///< every kind of case once, as a test of the benchmarks
     quick,  ///< what the ratios need, at a quarter of the size
-    full,   ///< all workloads
+    full,   ///< also other sizes, for plots, and fewer records in the same cells
 };
 
 /// The result of a case. Its time is the median.
