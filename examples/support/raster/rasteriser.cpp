@@ -87,12 +87,13 @@ std::string defines(const cellist::Device& device, const Sampling& sampling) {
            "\n#define RASTER_LANES " + std::to_string(tuning.lanes) + "\n#define RASTER_TEAMS " +
            std::to_string(tuning.teams) + "\n#define RASTER_SAMPLES " +
            std::to_string(sampling.samples) + "\n" +
-           (sampling.depth_range ? "#define RASTER_DEPTH_RANGE\n" : "");
+           (sampling.depth_range ? "#define RASTER_DEPTH_RANGE\n" : "") +
+           (sampling.exact ? "#define RASTER_EXACT\n" : "");
 }
 
 cellist::Source setup_source(const cellist::Device& device, const Sampling& sampling) {
     return {.text = joined({defines(device, sampling), kernels::definitions_h,
-                            kernels::triangle_clh, kernels::setup_cl}),
+                            kernels::triangle_clh, kernels::clip_clh, kernels::setup_cl}),
             .file_name = "raster_setup.cl",
             .options = build_options(device)};
 }
@@ -186,6 +187,11 @@ std::string build_options(const cellist::Device& device) {
     return "-cl-fp32-correctly-rounded-divide-sqrt";
 }
 
+std::string triangle_text(const cellist::Device& device, const Sampling& sampling) {
+    return joined({defines(device, sampling), kernels::definitions_h, kernels::triangle_clh,
+                   kernels::clip_clh, kernels::pixel_clh});
+}
+
 SetupKernels::SetupKernels(const cellist::Device& device, const Sampling& sampling)
     : transform(make_kernel(device, setup_source(device, sampling), "raster_transform")),
       bin(make_kernel(device, setup_source(device, sampling), "raster_bin")) {}
@@ -193,12 +199,12 @@ SetupKernels::SetupKernels(const cellist::Device& device, const Sampling& sampli
 cellist::Source Pass::pass_source(const cellist::Device& device, const Sampling& sampling,
                                   std::string_view source, const std::string& name,
                                   EdgeBits edge_bits) {
-    return {
-        .text = joined({defines(device, sampling),
-                        edge_bits == EdgeBits::wide ? "#define RASTER_WIDE" : "",
-                        kernels::definitions_h, kernels::triangle_clh, source, kernels::draw_clh}),
-        .file_name = name,
-        .options = build_options(device)};
+    return {.text = joined({defines(device, sampling),
+                            edge_bits == EdgeBits::wide ? "#define RASTER_WIDE" : "",
+                            kernels::definitions_h, kernels::triangle_clh, kernels::pixel_clh,
+                            source, kernels::draw_clh}),
+            .file_name = name,
+            .options = build_options(device)};
 }
 
 // ---- Projection ------------------------------------------------------------------------------

@@ -68,7 +68,12 @@ struct Placed {
 struct Sampling {
     int samples = 1;           ///< of a pixel: 1, 2, 4 or 8
     bool depth_range = false;  ///< fragments have slopes of their depth
+    bool exact = false;        ///< a fragment for every pixel of which a triangle overlaps a part
 };
+
+/// The beginning of a source that loads triangles again by the numbers of their pieces, and finds
+/// what they cover of a pixel: see raster_load_piece in clip.clh, and pixel.clh.
+[[nodiscard]] std::string triangle_text(const cellist::Device& device, const Sampling& sampling);
 
 /// A kernel of the rasteriser. `uses` names the types of the pass, as in cellist::Kernel.
 template <class... Uses>
@@ -179,18 +184,19 @@ public:
             capacity_of(blocks_));
     }
 
-    [[nodiscard]] std::uint64_t device_bytes() const {
-        return bytes_of(batches_, queue_, blocks_, counts_);
-    }
-
-private:
-    // Runs a kernel whose last parameters are RASTER_SCENE.
+    /// Runs a kernel whose last parameters are RASTER_SCENE. Does not block.
     template <class... Args>
     void run(cellist::Kernel& kernel, const cellist::Range& range, const Args&... args) {
         const Projection& p = projection_;
         kernel.run(range, args..., p.views_, p.instances_, p.vertices_, p.geometry_.positions(),
                    p.geometry_.indices(), batches_);
     }
+
+    [[nodiscard]] std::uint64_t device_bytes() const {
+        return bytes_of(batches_, queue_, blocks_, counts_);
+    }
+
+private:
     template <class T>
     [[nodiscard]] static cl_uint capacity_of(const cellist::Buffer<T>& queue) {
         return static_cast<cl_uint>(queue.size());

@@ -1,25 +1,6 @@
 // What comes before drawing: vertices are projected, and triangles are clipped and binned.
 
 // ---- projection ---------------------------------------------------------------------------------
-//
-// Where vertices snap to is part of the definition of a picture, which the reference of cellist-oit
-// follows with code of its own. So each operation is rounded to float: every product that is added
-// to something is an explicit fma, in a fixed order, and nothing else is contracted.
-
-#define RASTER_PLANES 5
-
-static inline float raster_row(const float* row, float x, float y, float z) {
-    return fma(row[0], x, fma(row[1], y, fma(row[2], z, row[3])));
-}
-
-// At least 0 on the inner side of a plane: 0 near, 1 right, 2 left, 3 bottom, 4 top.
-static inline float raster_plane(const View* view, int plane, float x, float y, float w) {
-    if (plane == 0) return w - view->near_depth;
-    if (plane == 1) return fma(RASTER_GUARD, w, -x);
-    if (plane == 2) return fma(RASTER_GUARD, w, x);
-    if (plane == 3) return fma(RASTER_GUARD, w, -y);
-    return fma(RASTER_GUARD, w, y);
-}
 
 // One bit for each plane that the point is outside of.
 static inline int raster_outside(const View* view, float x, float y, float w) {
@@ -27,11 +8,6 @@ static inline int raster_outside(const View* view, float x, float y, float w) {
     for (int plane = 0; plane < RASTER_PLANES; ++plane)
         if (!(raster_plane(view, plane, x, y, w) >= 0.0f)) bits |= 1 << plane;
     return bits;
-}
-
-// Sub-pixels from the image's edge for a coordinate that is inside of the guard band.
-static inline int raster_snap(float coordinate, float w, int side) {
-    return (int)rint(coordinate / w) + side * (RASTER_SUBPIXELS / 2);
 }
 
 // Projects the vertices of all instances, a work-group for each batch of them. positions: 3 floats
@@ -53,101 +29,6 @@ kernel void raster_transform(global const View* views, global const RasterInstan
     vertex.x = vertex.outside == 0 ? raster_snap(x, vertex.w, view.width) : 0;
     vertex.y = vertex.outside == 0 ? raster_snap(y, vertex.w, view.height) : 0;
     vertices[i + instance.vertex_offset] = vertex;
-}
-
-// ---- clipping -----------------------------------------------------------------------------------
-//
-// To the near plane and the guard band.
-
-#define RASTER_POLYGON_MAX 8
-#define RASTER_PIECES_MAX 6
-
-// A vertex in clip coordinates; share[j] is the part of the triangle's corner j in it.
-typedef struct {
-    float x, y, w;
-    float share[3];
-} RasterClipVertex;
-
-// What clipping leaves of a triangle: a convex polygon.
-typedef struct {
-    RasterClipVertex vertex[RASTER_POLYGON_MAX];
-    int count;
-} RasterPolygon;
-
-// Corner j of a triangle, before clipping.
-static inline RasterClipVertex raster_corner(const RasterInstance* instance, int j, float x,
-                                             float y, float z) {
-    RasterClipVertex corner;
-    corner.x = raster_row(instance->row_x, x, y, z);
-    corner.y = raster_row(instance->row_y, x, y, z);
-    corner.w = raster_row(instance->row_w, x, y, z);
-    for (int k = 0; k < 3; ++k) corner.share[k] = k == j ? 1.0f : 0.0f;
-    return corner;
-}
-
-// Where the edge from a (inside, distance da) to b (outside, db) meets a plane. Computed from the
-// inner end in every triangle, so that triangles that share the edge agree.
-static inline RasterClipVertex raster_meet(const View* view, int plane, RasterClipVertex a,
-                                           float da, RasterClipVertex b, float db) {
-    const float t = da / (da - db);
-    RasterClipVertex v;
-    v.x = fma(t, b.x - a.x, a.x);
-    v.y = fma(t, b.y - a.y, a.y);
-    v.w = plane == 0 ? view->near_depth : fma(t, b.w - a.w, a.w);
-    for (int k = 0; k < 3; ++k) v.share[k] = fma(t, b.share[k] - a.share[k], a.share[k]);
-    const float guard = RASTER_GUARD * v.w;
-    if (plane == 1) v.x = guard;
-    if (plane == 2) v.x = -guard;
-    if (plane == 3) v.y = guard;
-    if (plane == 4) v.y = -guard;
-    return v;
-}
-
-// Clips a triangle against the near plane and the guard band. The polygon has 0 or 3 to 8 vertices.
-static inline void raster_clip(const View* view, RasterPolygon* polygon) {
-    for (int plane = 0; plane < RASTER_PLANES; ++plane) {
-        const RasterPolygon in = *polygon;
-        polygon->count = 0;
-        for (int i = 0; i < in.count; ++i) {
-            const RasterClipVertex a = in.vertex[i];
-            const RasterClipVertex b = in.vertex[i + 1 < in.count ? i + 1 : 0];
-            const float da = raster_plane(view, plane, a.x, a.y, a.w);
-            const float db = raster_plane(view, plane, b.x, b.y, b.w);
-            if (da >= 0.0f && polygon->count < RASTER_POLYGON_MAX)
-                polygon->vertex[polygon->count++] = a;
-            if ((da >= 0.0f) != (db >= 0.0f) && polygon->count < RASTER_POLYGON_MAX)
-                polygon->vertex[polygon->count++] = da >= 0.0f
-                                                        ? raster_meet(view, plane, a, da, b, db)
-                                                        : raster_meet(view, plane, b, db, a, da);
-        }
-        if (polygon->count < 3) polygon->count = 0;
-    }
-}
-
-// What clipping leaves of a triangle.
-static inline void raster_clip_triangle(RASTER_SCENE, const View* view, const RasterTriangle* t,
-                                        RasterPolygon* polygon) {
-    const RasterInstance instance = instances[t->instance];
-    for (int k = 0; k < 3; ++k) {
-        const float3 p = vload3(t->corner[k], positions);
-        polygon->vertex[k] = raster_corner(&instance, k, p.x, p.y, p.z);
-    }
-    polygon->count = 3;
-    raster_clip(view, polygon);
-}
-
-// Makes t the triangle of vertices 0, piece + 1 and piece + 2 of its polygon.
-static inline void raster_piece(const View* view, const RasterPolygon* polygon, uint piece,
-                                RasterTriangle* t) {
-    t->number = t->number / RASTER_NUMBERS * RASTER_NUMBERS + piece;
-    t->clipped = 1;
-    for (int k = 0; k < 3; ++k) {
-        const RasterClipVertex v = polygon->vertex[k == 0 ? 0u : piece + k];
-        t->x[k] = raster_snap(v.x, v.w, view->width);
-        t->y[k] = raster_snap(v.y, v.w, view->height);
-        t->inverse_w[k] = v.w;  // until raster_invert()
-        for (int j = 0; j < 3; ++j) t->share[3 * k + j] = v.share[j];
-    }
 }
 
 // ---- binning ------------------------------------------------------------------------------------
@@ -205,9 +86,13 @@ static inline uint raster_block_place(const RasterBox* box, int x, int y) {
     return (box->x + x) * RASTER_BLOCK_PIXELS + 65536u * ((box->y + y) * RASTER_BLOCK_PIXELS);
 }
 
-// False where no sample of a block is covered, because all lie outside of one edge.
+// False where nothing of a block's pixels is covered, because all lies outside of one edge.
 static inline bool raster_touches(const RasterTriangle* t, const RasterBox* box, int x, int y) {
-    const int reach = RASTER_SAMPLES == 1 ? 0 : RASTER_REACH;
+#ifdef RASTER_EXACT
+    const int reach = RASTER_SUBPIXELS / 2;
+#else
+    const int reach = RASTER_PIXEL_REACH;
+#endif
     const int left = raster_centre((box->x + x) * RASTER_BLOCK_PIXELS) - reach;
     const int top = raster_centre((box->y + y) * RASTER_BLOCK_PIXELS) - reach;
     const int side = (RASTER_BLOCK_PIXELS - 1) * RASTER_SUBPIXELS + 2 * reach;

@@ -65,7 +65,8 @@ TEST_CASE("triangles cover the samples that they contain") {
                 for (const std::size_t sample : inside) ++expected[sample];
             }
             REQUIRE(mesh.triangles.size() > 10);
-            REQUIRE(coverage_of(mesh, pixel_view(width, height), static_cast<int>(pattern.size()))
+            REQUIRE(coverage_of(mesh, pixel_view(width, height),
+                                {.samples = static_cast<int>(pattern.size())})
                         .counts == expected);
         }
 }
@@ -79,7 +80,7 @@ TEST_CASE("triangles that share edges cover every sample once") {
                              {40000, 40000},   {64, 40000},  {-40000, 30000}};
         for (std::size_t i = 0; i < std::size(rim); ++i)
             add_triangle(mesh, hub, rim[i], rim[(i + 1) % std::size(rim)]);
-        const Coverage coverage = coverage_of(mesh, pixel_view(53, 47), samples);
+        const Coverage coverage = coverage_of(mesh, pixel_view(53, 47), {.samples = samples});
         CHECK(std::ranges::count(coverage.counts, 1U) ==
               static_cast<std::ptrdiff_t>(coverage.counts.size()));
     }

@@ -33,7 +33,8 @@ inline raster::View pixel_view(int width, int height) {
 }
 
 /// Draws a mesh through the rasteriser, with a pass that counts.
-inline Coverage coverage_of(const support::Mesh& mesh, const raster::View& view, int samples = 1) {
+inline Coverage coverage_of(const support::Mesh& mesh, const raster::View& view,
+                            const raster::Sampling& sampling = {}) {
     constexpr auto source = R"(
 #define RASTER_TARGET volatile global uint* counts, global float* depths
 #define RASTER_TARGET_PASS counts, depths
@@ -46,7 +47,6 @@ static inline void raster_emit(RASTER_TARGET, const View* view,
     depths[pixel] = covered->depth;
 }
 )";
-    const raster::Sampling sampling{.samples = samples};
     raster::SetupKernels setup(device(), sampling);
     raster::Pass pass(device(), sampling, source, "count.cl");
     const support::Mesh* const meshes[] = {&mesh};
@@ -57,7 +57,7 @@ static inline void raster_emit(RASTER_TARGET, const View* view,
     raster::Triangles triangles(device(), projection, all);
     const auto pixels =
         static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
-    Buffer<cl_uint> counts(device(), pixels * static_cast<std::size_t>(samples));
+    Buffer<cl_uint> counts(device(), pixels * static_cast<std::size_t>(sampling.samples));
     Buffer<cl_float> depths(device(), pixels);
     projection.transform();
     do {
