@@ -187,7 +187,9 @@ cellist::Shape FragmentSource::shape() const {
 }
 
 raster::Sampling FragmentSource::sampling() const {
-    return {.samples = frame_.quality.samples, .depth_range = frame_.quality.depth_range};
+    return {.samples = frame_.quality.samples,
+            .depth_range = frame_.quality.depth_range,
+            .exact = draws_exactly()};
 }
 
 std::string FragmentSource::with_defines(std::initializer_list<std::string_view> parts) const {
@@ -208,10 +210,13 @@ std::string FragmentSource::pass_text(std::string_view source) const {
 
 cellist::Source FragmentSource::screen_source(std::string_view source,
                                               const std::string& file_name) const {
+    const std::string head = draws_exactly()
+                                 ? raster::triangle_text(device_, sampling())
+                                 : "#include <cellist/lists.clh>\n#pragma OPENCL FP_CONTRACT OFF";
     return {
-        .text = joined({"#include <cellist/lists.clh>\n#pragma OPENCL FP_CONTRACT OFF", defines_,
-                        kernels::shading_clh, kernels::fragment_clh,
-                        blend_function_text(frame_.blend_function), kernels::blend_clh, source}),
+        .text = joined({head, defines_, kernels::shading_clh, kernels::fragment_clh,
+                        blend_function_text(frame_.blend_function), kernels::blend_clh,
+                        draws_exactly() ? kernels::coverage_clh : kernels::samples_clh, source}),
         .file_name = file_name,
         .options = raster::build_options(device_)};
 }

@@ -82,9 +82,9 @@ public:
                                                 const std::string& name,
                                                 const Uses&... uses) const {
         return with_node_type(layout_.words, [&]<class Node>(const Node*) {
-            return cellist::Kernel(device_, screen_source(source, file_name), name,
-                                   cellist::type<raster::View>, cellist::type<OitFrame>,
-                                   cellist::type<Node>, uses...);
+            return raster::make_kernel(device_, screen_source(source, file_name), name,
+                                       cellist::type<OitFrame>, cellist::type<Material>,
+                                       cellist::type<Node>, uses...);
         });
     }
 
@@ -92,7 +92,9 @@ public:
     template <class... Args>
     void run_on_screen(cellist::Kernel& step, const Args&... args) {
         const cellist::Buffer<cl_float4>& image = sample_image_ ? *sample_image_ : image_;
-        if (opaque_)
+        if (draws_exactly())
+            transparent_.run(step, screen_, args..., constants_, image);
+        else if (opaque_)
             step.run(screen_, args..., constants_, projection_.views(), opaque_->depth_bits,
                      opaque_->colour, image);
         else
@@ -149,6 +151,7 @@ private:
     };
 
     void draw_opaque();
+    [[nodiscard]] bool draws_exactly() const { return frame_.quality.coverage == Coverage::exact; }
     [[nodiscard]] raster::Sampling sampling() const;
     // The parts, after the macros that they name.
     [[nodiscard]] std::string with_defines(std::initializer_list<std::string_view> parts) const;

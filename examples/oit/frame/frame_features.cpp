@@ -80,10 +80,11 @@ FrameFeatures features_of(const Frame& frame) {
             features.opaque = true;
             continue;
         }
-        features.stores_opaque = features.stores_opaque || is_opaque;
         const Material& material = scene.material_of(instance);
         const auto blend = is_opaque ? Blend::over : static_cast<Blend>(material.blend);
         const float alpha = is_opaque ? 1 : material.alpha;
+        features.stores_opaque = features.stores_opaque || is_opaque ||
+                                 (frame.stores_opaque() && blend == Blend::over && alpha == 1);
         features.blends |= 1U << static_cast<std::uint32_t>(blend);
         features.opacities = features.opacities ||
                              (!is_opaque && !scene.models.at(instance.model).opacities.empty());
@@ -146,6 +147,7 @@ std::string defines_of(const Frame& frame, const FrameFeatures& features) {
         text += "#define OIT_PER_SAMPLE\n";
     if (quality.depth_range)
         text += "#define OIT_DEPTH_RANGE\n" + define("OIT_OFFSETS", offsets_text(quality.samples));
+    if (quality.coverage == Coverage::exact) text += "#define OIT_EXACT\n";
     if (quality.epsilon > 0) text += "#define OIT_EARLY_END\n";
     if (quality.reduce > 1) text += "#define OIT_REDUCED\n";
     if (frame.memory_bytes) text += "#define OIT_SLICES\n";

@@ -84,6 +84,7 @@ NodeLayout node_layout(const Quality& quality, const FrameFeatures& features) {
     if (features.alpha_varies) layout.alpha = layouter.place(layouter.alpha_bits());
     if (features.blend_varies()) layout.blend = layouter.place(3);
     if (quality.depth_range) layout.depth_range = layouter.place(32);
+    if (quality.coverage == Coverage::exact) layout.triangle = layouter.place(32);
     layout.words = layouter.words();
     return layout;
 }
@@ -112,6 +113,7 @@ std::string defines_of(const NodeLayout& layout) {
     text += defines_of("COVERAGE", layout.coverage);
     text += defines_of("BLEND", layout.blend);
     text += defines_of("DEPTH_RANGE", layout.depth_range);
+    text += defines_of("TRIANGLE", layout.triangle);
     return text;
 }
 

@@ -63,6 +63,7 @@ struct NodeLayout {
     NodeField coverage = {};     ///< a bit for each sample
     NodeField blend = {};        ///< Blend; 6 where a surface is left
     NodeField depth_range = {};  ///< two halves: how much 1 / depth grows a pixel, along x and y
+    NodeField triangle = {};     ///< its number, with exact coverage; the last word
 
     /// The depth in a key. `features` gives the range of quantised depths.
     [[nodiscard]] double depth_of(std::uint32_t key, const FrameFeatures& features) const;

@@ -159,6 +159,15 @@ private:
     cellist::Pending<std::vector<cl_uint>> longer_read_;
 };
 
+// What a pixel's media and functions of one's own need differs from place to place in it.
+std::string refusal_of_lists(const Frame& frame, const FrameFeatures& features) {
+    if (frame.quality.coverage == Coverage::exact &&
+        (features.has(Blend::absorb) || features.has(Blend::user)))
+        return "exact coverage blends over, additive and multiplicative surfaces; draw media and "
+               "functions with --samples 8";
+    return refuses_nothing(frame, features);
+}
+
 template <cellist::Storage storage>
 std::unique_ptr<Method> make_lists(FragmentSource& source) {
     return make_list_method(source, {.storage = storage});
@@ -170,7 +179,7 @@ const MethodRegistration linked_method(
      .position = 10,
      .exact = true,
      .cuts = true,
-     .refusal = refuses_nothing,
+     .refusal = refusal_of_lists,
      .make = make_lists<cellist::Storage::linked>,
      .bound = bound_of_layers});
 
@@ -178,7 +187,7 @@ const MethodRegistration counted_method({.name = "counted",
                                          .summary = "contiguous lists, in two passes (prefix sums)",
                                          .position = 20,
                                          .exact = true,
-                                         .refusal = refuses_nothing,
+                                         .refusal = refusal_of_lists,
                                          .make = make_lists<cellist::Storage::counted>,
                                          .bound = bound_of_layers,
                                          .passes = two_passes});
@@ -188,7 +197,7 @@ const MethodRegistration fixed_method(
      .summary = "fixed slots for each pixel, up to the longest list (FreePipe, Liu et al. 2010)",
      .position = 30,
      .exact = true,
-     .refusal = refuses_nothing,
+     .refusal = refusal_of_lists,
      .make = make_lists<cellist::Storage::fixed>,
      .bound = bound_of_layers});
 
