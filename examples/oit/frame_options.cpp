@@ -69,7 +69,8 @@ void read_view(const std::string& text, FrameOptions& options) {
 }
 
 void read_samples(const std::string& text, FrameOptions& options) {
-    if (text == "exact") {
+    options.all_samples = text == "all";
+    if (text == "exact" || options.all_samples) {
         options.quality.samples = 1;
         options.quality.coverage = Coverage::exact;
         return;

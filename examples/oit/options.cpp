@@ -107,6 +107,8 @@ void refuse_idle_options(const support::CommandLine& line, const Options& option
          "--reduce has no layers for --lens: leave one of them out"},
         {"--memory", options.lens.has_value(),
          "--memory draws slices, and --lens needs all layers at once: leave one of them out"},
+        {"--samples", options.all_samples,
+         "--samples all is for cellist-tradeoff: choose 1, 2, 4, 8 or exact"},
         {"--layers", is_exact && options.quality.layers.has_value(),
          "--samples exact blends all triangles of a pixel: leave out --layers"},
         {"--lens-rays", !options.lens, "--lens-rays is for --lens, which is not given"},

@@ -10,6 +10,10 @@ namespace {
 
 using nlohmann::ordered_json;
 
+const char* name_of(Coverage coverage) {
+    return coverage == Coverage::exact ? "exact" : "samples";
+}
+
 template <class T>
 ordered_json or_null(const std::optional<T>& value) {
     return value ? ordered_json(*value) : ordered_json(nullptr);
@@ -39,7 +43,7 @@ ordered_json json_of(const FrameOptions& options, std::string_view program) {
                         {"focus", support::finite_or_null(options.lens->focus)}};
     const Quality& quality = options.quality;
     json["samples"] = quality.samples;
-    json["coverage"] = quality.coverage == Coverage::exact ? "exact" : "samples";
+    json["coverage"] = options.all_samples ? "all" : name_of(quality.coverage);
     json["resolve"] = quality.resolve == Resolve::per_pixel ? "pixel" : "sample";
     json["depth_range"] = quality.depth_range;
     json["depth_scale"] = quality.depth_scale == DepthScale::linear ? "linear" : "reversed";
@@ -51,7 +55,8 @@ ordered_json json_of(const Setting& setting) {
     return {{"options", text(setting)},          {"method", setting.method->name},
             {"exact", setting.method->exact},    {"size", or_null(quality.size)},
             {"layers", or_null(quality.layers)}, {"epsilon", as_read(quality.epsilon)},
-            {"format", name_of(quality.format)}, {"lens_rays", quality.lens_rays}};
+            {"format", name_of(quality.format)}, {"samples", quality.samples},
+            {"coverage", name_of(quality.coverage)}, {"lens_rays", quality.lens_rays}};
 }
 
 ordered_json times_json(const Measurement& m) {

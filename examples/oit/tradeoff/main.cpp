@@ -44,7 +44,7 @@ void run(const oit::TradeoffOptions& options) {
     oit::stand_on_floor(scene, options);
     const oit::Frame frame = oit::make_frame(scene, options);
     const oit::Reference reference = reference_of(device, frame);
-    if (reference.fragments.empty())
+    if (reference.fragments.empty() && oit::reference_views(frame) == 0)
         throw support::InputError("nothing transparent is in view of '" + oit::title_of(options) +
                                   "', so there is nothing to compare");
     sweep.fragments = reference.fragments.size();
@@ -55,7 +55,8 @@ void run(const oit::TradeoffOptions& options) {
     std::optional<oit::Pictures> pictures;
     if (!options.html.empty()) pictures.emplace(reference, frame);
     const std::vector<oit::Setting> settings =
-        oit::settings_of(frame, sweep.most_layers, options.methods);
+        options.all_samples ? oit::settings_of_samples(frame)
+                            : oit::settings_of(frame, sweep.most_layers, options.methods);
     if (settings.empty())
         throw support::InputError("the method " + std::string(sweep.left_out.front().method) +
                                   " cannot draw this: " + sweep.left_out.front().reason);

@@ -166,6 +166,8 @@ std::string to_csv(const Sweep& sweep) {
                                      "layers",
                                      "epsilon",
                                      "format",
+                                     "samples",
+                                     "coverage",
                                      "ms",
                                      "fastest_ms",
                                      "lower_quartile_ms",

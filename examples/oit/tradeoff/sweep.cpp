@@ -65,6 +65,17 @@ std::vector<Setting> settings_of(const Frame& frame, std::uint64_t most_layers,
     return settings;
 }
 
+std::vector<Setting> settings_of_samples(const Frame& frame) {
+    std::vector<Setting> settings;
+    for (const int samples : {1, 2, 4, 8}) {
+        settings.push_back(exact_setting(frame.quality));
+        settings.back().quality.coverage = Coverage::samples;
+        settings.back().quality.samples = samples;
+    }
+    settings.push_back(exact_setting(frame.quality));
+    return settings;
+}
+
 std::vector<LeftOut> left_out(const Frame& frame, std::span<const std::string_view> names) {
     std::vector<LeftOut> result;
     for (const MethodInfo& method : methods()) {
@@ -135,7 +146,7 @@ std::vector<Relation> fewer_layers(const Sweep& sweep) {
 std::vector<Relation> exact_methods(const Sweep& sweep) {
     std::vector<Relation> result;
     const Measurement* all = all_layers(sweep);
-    if (all == nullptr) return result;
+    if (all == nullptr || sweep.options.all_samples) return result;
     for (const Measurement& measurement : sweep.measurements)
         if (gives_nothing_up(measurement))
             result.push_back(relation(measurement, *all, measurement));

@@ -40,6 +40,9 @@ struct Sweep {
 [[nodiscard]] std::vector<Setting> settings_of(const Frame& frame, std::uint64_t most_layers,
                                                std::span<const std::string_view> methods);
 
+/// 1, 2, 4 and 8 samples and exact coverage, with the method `linked`.
+[[nodiscard]] std::vector<Setting> settings_of_samples(const Frame& frame);
+
 /// Those of the named methods that refuse the frame.
 [[nodiscard]] std::vector<LeftOut> left_out(const Frame& frame,
                                             std::span<const std::string_view> methods);
@@ -81,7 +84,8 @@ struct Relation {
 [[nodiscard]] std::vector<Relation> fewer_layers(const Sweep& sweep);
 
 /// Exact methods with nodes of floats against `linked`, fastest first: the factor is how many times
-/// as long they take (Yang et al. 2010, Table 1). Nothing where `linked` was not measured.
+/// as long they take (Yang et al. 2010, Table 1). Nothing where `linked` was not measured, or where
+/// samples are compared.
 [[nodiscard]] std::vector<Relation> exact_methods(const Sweep& sweep);
 
 }  // namespace oit

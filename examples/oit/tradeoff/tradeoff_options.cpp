@@ -37,9 +37,12 @@ TradeoffOptions parse_tradeoff_options(int count, const char* const* arguments) 
     TradeoffOptions options;
     options.width = 640;
     options.height = 360;
-    support::CommandLine line("cellist-tradeoff",
-                              "Draws a scene with every method and setting. Measures the cost of "
-                              "each, and its error against a rendering in double precision.");
+    support::CommandLine line(
+        "cellist-tradeoff",
+        "Draws a scene with every method and setting. Measures the cost of "
+        "each, and its error against a rendering in double precision. With --samples "
+        "all, compares 1, 2, 4 and 8 samples and exact coverage with 4,096 "
+        "samples.");
     add_frame_options(line, options);
     line.add("--methods", "all", "methods to compare: all, exact, or names", "M,M,...",
              [&](const std::string& text) { options.methods = read_methods(text); });
@@ -56,6 +59,14 @@ TradeoffOptions parse_tradeoff_options(int count, const char* const* arguments) 
     line.add_text("--html", options.html, "write a report with plot and pictures to this file",
                   "FILE");
     line.add_check([&] {
+        const support::IdleOption idle[] = {
+            {"--methods", options.all_samples,
+             "--samples all compares them with the method linked: leave out --methods"},
+            {"--heatmap", options.lens || options.quality.coverage == Coverage::exact,
+             "--heatmap shows the layers of a reference in double precision, which --lens and "
+             "--samples exact do not have: leave one of them out"}};
+        line.refuse_idle(idle);
+        if (options.all_samples) options.methods = {"linked"};
         const support::NamedFile outputs[] = {{"--heatmap", options.heatmap},
                                               {"--json", options.json},
                                               {"--csv", options.csv},

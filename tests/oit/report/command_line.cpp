@@ -98,6 +98,8 @@ TEST_CASE("bad arguments are refused") {
              {"--reduce 2 --samples exact", "one sample"},
              {"--reduce 2 --lens 0.1,4", "--lens"},
              {"--samples exactly", "8 or exact"},
+             {"--samples all", "cellist-tradeoff"},
+             {"--samples exact --blend absorb", "--samples 8"},
              {"--samples exact --depth-range", "has none"},
              {"--samples exact --resolve sample", "has none"},
              {"--samples exact --layers 4", "all triangles"},

@@ -168,7 +168,7 @@ TEST_CASE("lines of CSV have a field for each name") {
     REQUIRE(lines.size() == 5);
     CHECK(lines[0].starts_with("options,method,size,layers,"));
     CHECK(lines[1].starts_with(
-        "--method linked --layers 8,linked,,8,0.0,float,2.0,2.0,2.0,2.0,1000,13.5,"));
+        "--method linked --layers 8,linked,,8,0.0,float,1,samples,2.0,2.0,2.0,2.0,1000,13.5,"));
     CHECK(lines[4].ends_with(",\"too large, \"\"by far\"\"\""));
     const std::size_t commas = count_of(lines[0], ",");
     for (std::size_t i = 1; i < 4; ++i) CHECK(count_of(lines[i], ",") == commas);
