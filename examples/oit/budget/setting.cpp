@@ -11,6 +11,7 @@ namespace oit {
 namespace {
 
 constexpr std::array layer_counts{1U, 2U, 4U, 8U, 16U, 32U, 64U};
+constexpr std::array ray_counts{8U, 16U, 32U, 64U, 128U};
 constexpr std::array tried_epsilons{0.1F, 0.03F, 0.01F, 0.003F};
 
 }  // namespace
@@ -82,7 +83,11 @@ std::vector<Setting> settings_for(const Frame& frame, std::uint64_t most_layers)
         if (!method.cuts) continue;
         for (const std::uint32_t layers : layer_counts)
             if (layers < most_layers) add(method, &Quality::layers, layers);
-        for (const float epsilon : tried_epsilons) add(method, &Quality::epsilon, epsilon);
+        if (!frame.lens)
+            for (const float epsilon : tried_epsilons) add(method, &Quality::epsilon, epsilon);
+        else
+            for (const std::uint32_t rays : ray_counts)
+                if (rays != base.lens_rays) add(method, &Quality::lens_rays, rays);
     }
     return settings;
 }

@@ -34,8 +34,8 @@ struct Setting {
 /// The settings worth comparing for a frame, those that a method refuses left out. Samples,
 /// resolve, ranges and scale of depth are those of the frame. Exact methods come in each node
 /// format; those that cut also with 1, 2, 4 ... 64 nearest layers, as long as that is fewer than
-/// `most_layers`, the most in any pixel, and with early ends; approximations in each of their
-/// sizes.
+/// `most_layers`, the most in any pixel, and with early ends, or with a lens in numbers of rays;
+/// approximations in each of their sizes.
 [[nodiscard]] std::vector<Setting> settings_for(const Frame& frame, std::uint64_t most_layers);
 
 /// The frame that a setting draws instead of this one.

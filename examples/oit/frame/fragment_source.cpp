@@ -74,8 +74,22 @@ std::vector<cl_float> tints_of(const Scene& scene) {
     return tints;
 }
 
+// The background is a gradient from the top of the image to its bottom: it goes on in the margin.
+Lighting lighting_of(const Frame& frame) {
+    Lighting lighting = frame.scene.lighting;
+    const auto inner = static_cast<cl_float>(frame.height() - 2 * frame.margin);
+    const cl_float beyond = static_cast<cl_float>(frame.margin) / inner;
+    for (int i = 0; i < 3; ++i) {
+        const cl_float more =
+            beyond * (lighting.background_bottom[i] - lighting.background_top[i]);
+        lighting.background_top[i] -= more;
+        lighting.background_bottom[i] += more;
+    }
+    return lighting;
+}
+
 OitFrame constants_of(const Frame& frame, const FrameFeatures& features) {
-    return {.lighting = frame.scene.lighting,
+    return {.lighting = lighting_of(frame),
             .alpha = features.alpha,
             .least_depth = features.least_depth,
             .greatest_depth = features.greatest_depth,

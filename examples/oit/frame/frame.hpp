@@ -69,6 +69,8 @@ struct Frame {
     Quality quality = {};
     std::optional<BlendFunction> blend_function = {};  ///< of Blend::user
     std::optional<Lens> lens = {};                     ///< none: a pinhole
+    /// Pixels on each side of the views that are drawn only because a lens blurs them into others.
+    int margin = 0;
     /// The most that a method may keep on the device. Lists are built and blended in slices then.
     std::optional<std::uint64_t> memory_bytes = {};
 

@@ -10,11 +10,12 @@ std::string accumulating_text(std::string_view source) {
 }
 
 std::string accumulating_refusal(const Frame& frame, const FrameFeatures& features) {
+    if (std::string needed = needs_all_fragments(frame); !needed.empty()) return needed;
     if (features.blends != 0 && features.blends != 1U << static_cast<std::uint32_t>(Blend::over))
         return "it supports only surfaces that cover what is behind them";
     if (frame.quality.depth_range) return "it has no depth for each sample";
     if (frame.quality.layers) return "it blends all layers at once";
-    return needs_all_fragments(frame);
+    return {};
 }
 
 void require_wide_sums(const cellist::Device& device) {

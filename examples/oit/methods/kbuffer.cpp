@@ -21,7 +21,7 @@ std::unique_ptr<Method> make_kbuffer(FragmentSource& source) {
     options.storage = with_node_type(source.layout().words, [&]<class Node>(const Node*) {
         return cellist::nearest(&Node::key, slots_of(source.frame().quality));
     });
-    return make_list_method(source, options);
+    return make_layer_method(source, options);
 }
 
 std::string kbuffer_refusal(const Frame& frame, const FrameFeatures&) {

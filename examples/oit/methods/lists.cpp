@@ -3,6 +3,7 @@
 
 #include <bit>
 
+#include "methods/lens_gather.hpp"
 #include "methods/list_slices.hpp"
 #include "oit_kernels.hpp"
 
@@ -16,8 +17,12 @@ constexpr std::uint32_t nearest_max = 16;
 // The longest lists that the reader sorts itself; longer ones are sorted before.
 constexpr std::uint32_t sorted_in_reader_max = 127;
 
+std::string layers_define(const Quality& quality) {
+    return quality.layers ? define("OIT_LAYERS", *quality.layers) : "";
+}
+
 ListReader blending_reader(const Quality& quality, bool needs_sorted, std::string defines = {}) {
-    if (quality.layers) defines += define("OIT_LAYERS", *quality.layers);
+    defines += layers_define(quality);
     return {defines.append(kernels::lists_cl), "lists.cl", "oit_resolve_lists", needs_sorted};
 }
 
@@ -33,17 +38,21 @@ ListReader first_reader(const Quality& quality) {
 template <class Node>
 class ListMethod : public Method {
 public:
+    // Without a reader, the lists are seen through the frame's lens.
     ListMethod(FragmentSource& source, const cellist::ListsOptions& options,
-               const ListReader& reader, bool may_sort_in_reader)
+               const std::optional<ListReader>& reader, bool may_sort_in_reader)
         : source_(source),
           options_(options),
-          sorts_(reader.needs_sorted),
+          sorts_(!reader || reader->needs_sorted),
           may_sort_in_reader_(may_sort_in_reader),
           may_fix_capacity_(keeps_all()),
           fragments_(lists_with(options)),
           pass_(source.pass(kernels::lists_cl, "lists.cl", fragments_)),
-          reader_(kernel_of(reader)),
           longer_(source.device(), 1) {
+        if (reader)
+            reader_.emplace(kernel_of(*reader));
+        else
+            lens_.emplace(source, layers_define(source.frame().quality), fragments_);
         // What a sort keeps counts for --memory from the first frame.
         if (sorts_ && source.frame().memory_bytes) fragments_.sort(&Node::key);
     }
@@ -64,25 +73,20 @@ public:
             return;
         }
         if (sorts_) fragments_.sort(&Node::key);
-        source_.run_on_screen(reader_, fragments_);
+        if (lens_)
+            lens_->run(fragments_);
+        else
+            source_.run_on_screen(*reader_, fragments_);
     }
 
     [[nodiscard]] bool finish_or_grow() override {
-        if (pool_ != Pool::bounded) {
-            if (may_fix_capacity_) {
-                lengths_ = fragments_.lengths();
-                pool_ = Pool::measured;
-            }
-            return true;
-        }
-        const bool fitted = built_.get().dropped == 0;
-        if (fitted && !(unsorted_reader_ && longer_read_.get().front() != 0)) return true;
-        fragments_ = lists_with(options_);
-        pool_ = Pool::growing;
-        return false;
+        const bool gathered = !lens_ || lens_->finish_or_grow();
+        return finish_lists() && gathered;
     }
 
-    [[nodiscard]] std::uint64_t device_bytes() const override { return fragments_.pool_bytes(); }
+    [[nodiscard]] std::uint64_t device_bytes() const override {
+        return fragments_.pool_bytes() + (lens_ ? lens_->device_bytes() : 0);
+    }
     [[nodiscard]] std::optional<cellist::Lengths> lengths() const override {
         if (!keeps_all()) return {};
         return fragments_.lengths();
@@ -102,6 +106,22 @@ private:
         measured,  // as growing, and lengths_ is known: the next store() bounds the capacity
         bounded,   // store() does not wait, and fragments that do not fit are dropped
     };
+
+    // As finish_or_grow(), for the lists alone.
+    [[nodiscard]] bool finish_lists() {
+        if (pool_ != Pool::bounded) {
+            if (may_fix_capacity_) {
+                lengths_ = fragments_.lengths();
+                pool_ = Pool::measured;
+            }
+            return true;
+        }
+        const bool fitted = built_.get().dropped == 0;
+        if (fitted && !(unsorted_reader_ && longer_read_.get().front() != 0)) return true;
+        fragments_ = lists_with(options_);
+        pool_ = Pool::growing;
+        return false;
+    }
 
     [[nodiscard]] bool keeps_all() const { return options_.overflow == cellist::Overflow::grow; }
 
@@ -150,7 +170,8 @@ private:
     bool may_fix_capacity_;
     cellist::Lists<Node> fragments_;
     raster::Pass pass_;
-    cellist::Kernel reader_;
+    std::optional<cellist::Kernel> reader_;
+    std::optional<LensGather> lens_;
     std::optional<cellist::Kernel> unsorted_reader_;  // of short lists in a fixed pool
     Pool pool_ = Pool::growing;
     cellist::Lengths lengths_ = {};    // of the last frame, if the pool is measured
@@ -158,6 +179,15 @@ private:
     cellist::Pending<cellist::BuildReport> built_;
     cellist::Pending<std::vector<cl_uint>> longer_read_;
 };
+
+std::unique_ptr<Method> make_unsliced(FragmentSource& source, const cellist::ListsOptions& options,
+                                      const std::optional<ListReader>& reader,
+                                      bool may_sort_in_reader) {
+    return with_node_type(
+        source.layout().words, [&]<class Node>(const Node*) -> std::unique_ptr<Method> {
+            return std::make_unique<ListMethod<Node>>(source, options, reader, may_sort_in_reader);
+        });
+}
 
 // What a pixel's media and functions of one's own need differs from place to place in it.
 std::string refusal_of_lists(const Frame& frame, const FrameFeatures& features) {
@@ -170,7 +200,7 @@ std::string refusal_of_lists(const Frame& frame, const FrameFeatures& features) 
 
 template <cellist::Storage storage>
 std::unique_ptr<Method> make_lists(FragmentSource& source) {
-    return make_list_method(source, {.storage = storage});
+    return make_layer_method(source, {.storage = storage});
 }
 
 const MethodRegistration linked_method(
@@ -209,11 +239,13 @@ std::unique_ptr<Method> make_list_method(FragmentSource& source,
     const ListReader reader = other_reader ? *other_reader : first_reader(source.frame().quality);
     if (source.frame().memory_bytes && options.overflow == cellist::Overflow::grow)
         return make_list_slices(source, options, reader);
-    const bool may_sort_in_reader = !other_reader && reader.needs_sorted;
-    return with_node_type(
-        source.layout().words, [&]<class Node>(const Node*) -> std::unique_ptr<Method> {
-            return std::make_unique<ListMethod<Node>>(source, options, reader, may_sort_in_reader);
-        });
+    return make_unsliced(source, options, reader, !other_reader && reader.needs_sorted);
+}
+
+std::unique_ptr<Method> make_layer_method(FragmentSource& source,
+                                          const cellist::ListsOptions& options) {
+    if (!source.frame().lens) return make_list_method(source, options);
+    return make_unsliced(source, options, {}, false);
 }
 
 }  // namespace oit

@@ -25,4 +25,8 @@ struct ListReader {
     FragmentSource& source, const cellist::ListsOptions& options,
     const std::optional<ListReader>& reader = {});
 
+/// The same, or the picture through the frame's lens, which has all layers at once.
+[[nodiscard]] std::unique_ptr<Method> make_layer_method(FragmentSource& source,
+                                                        const cellist::ListsOptions& options);
+
 }  // namespace oit

@@ -68,6 +68,7 @@ struct MethodInfo {
     bool exact;                ///< the image of all fragments, up to rounding
     bool cuts = false;         ///< tried with fewer layers and early ends
     bool has_nodes = true;     ///< keeps fragments as nodes, in Quality::format
+    bool draws_views = false;  ///< draws pictures of its own, so that a lens needs no margin
     /// What it can be compiled for (layers, trials, steps ...), smallest first: Quality::size.
     /// Nothing where there is no such choice.
     std::span<const std::uint32_t> sizes = {};
@@ -102,6 +103,9 @@ public:
 /// For methods that do not keep all fragments: why they cannot draw a frame that needs them, or
 /// nothing.
 [[nodiscard]] std::string needs_all_fragments(const Frame& frame);
+
+/// For methods that draw through a lens only.
+[[nodiscard]] std::string refuses_pinholes(const Frame& frame, const FrameFeatures& features);
 
 /// For methods that draw every frame.
 [[nodiscard]] std::string refuses_nothing(const Frame& frame, const FrameFeatures& features);

@@ -10,10 +10,11 @@ std::string peeling_text(std::string_view source) {
 }
 
 std::string peeling_refusal(const Frame& frame, const FrameFeatures&) {
+    if (std::string needed = needs_all_fragments(frame); !needed.empty()) return needed;
     if (frame.quality.depth_range) return "it has no depth for each sample";
     if (frame.quality.samples > 1 && frame.quality.resolve == Resolve::per_sample)
         return "it resolves samples by pixel";
-    return needs_all_fragments(frame);
+    return {};
 }
 
 void require_wide_atomics(const cellist::Device& device, std::string_view what) {

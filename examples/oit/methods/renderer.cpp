@@ -26,13 +26,24 @@ std::unique_ptr<Reduction> make_reduction(const cellist::Device& device, const F
     return frame.quality.reduce > 1 ? std::make_unique<Reduction>(device, frame) : nullptr;
 }
 
+std::unique_ptr<LensFrame> make_lens_frame(const cellist::Device& device, const Frame& frame,
+                                           const MethodInfo& method) {
+    return frame.lens && !method.draws_views ? std::make_unique<LensFrame>(device, frame) : nullptr;
+}
+
 }  // namespace
 
 Renderer::Renderer(const cellist::Device& device, const Frame& frame, const MethodInfo& method)
     : device_(device),
+      lens_(make_lens_frame(device, frame, method)),
       reduction_(make_reduction(device, frame)),
-      source_(device, reduction_ ? reduction_->reduced() : frame),
+      source_(device, drawn(frame)),
       method_(make_method(source_, method)) {}
+
+const Frame& Renderer::drawn(const Frame& frame) const {
+    if (lens_) return lens_->widened();
+    return reduction_ ? reduction_->reduced() : frame;
+}
 
 void Renderer::start(const AfterPass& after_pass) {
     if (reduction_) reduction_->transform();
@@ -48,6 +59,7 @@ void Renderer::start(const AfterPass& after_pass) {
     method_->resolve();
     source_.average_samples();
     if (reduction_) reduction_->enlarge(source_);
+    if (lens_) lens_->cut_out(source_);
     after_pass(&PassTimes::sort_blend_ms);
 
     drawn_ = device_.enqueue_marker();
@@ -79,6 +91,7 @@ void Renderer::finish() {
 }
 
 double Renderer::draw_changed() {
+    if (lens_) lens_->follow();
     if (reduction_) reduction_->follow();
     source_.follow();
     return draw();

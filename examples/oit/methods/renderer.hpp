@@ -8,6 +8,7 @@
 #include <cellist/cellist.hpp>
 
 #include "frame/fragment_source.hpp"
+#include "frame/lens_frame.hpp"
 #include "frame/reduction.hpp"
 #include "methods/count_fragments.hpp"
 #include "methods/method.hpp"
@@ -53,6 +54,7 @@ public:
     [[nodiscard]] std::vector<cl_float4> image() const { return picture().download(); }
     /// The same on the device.
     [[nodiscard]] const cellist::Buffer<cl_float4>& picture() const {
+        if (lens_) return lens_->image();
         return reduction_ ? reduction_->image() : source_.image();
     }
     /// The number of transparent fragments in each pixel of drawn_frame(), whatever the method
@@ -66,7 +68,7 @@ public:
     /// Everything that the renderer holds on the device.
     [[nodiscard]] std::uint64_t device_bytes() const {
         return source_.device_bytes() + method_->device_bytes() +
-               (reduction_ ? reduction_->device_bytes() : 0);
+               (lens_ ? lens_->device_bytes() : 0) + (reduction_ ? reduction_->device_bytes() : 0);
     }
 
 private:
@@ -75,6 +77,10 @@ private:
     [[nodiscard]] bool finish_or_grow();
 
     const cellist::Device& device_;
+    // The frame that is drawn, if it is not the whole one.
+    [[nodiscard]] const Frame& drawn(const Frame& frame) const;
+
+    std::unique_ptr<LensFrame> lens_;       ///< where Frame::lens asks for it
     std::unique_ptr<Reduction> reduction_;  ///< where Quality::reduce asks for it
     FragmentSource source_;
     std::unique_ptr<Method> method_;

@@ -8,6 +8,7 @@
 #include "files.hpp"
 #include "input_error.hpp"
 #include "json_report.hpp"
+#include "methods/renderer.hpp"
 #include "methods/view_mean.hpp"
 #include "number_text.hpp"
 #include "progress.hpp"
@@ -33,6 +34,21 @@ void print_progress(const oit::Measurement& measurement, std::size_t done, std::
         std::cerr << measurement.failure << '\n';
 }
 
+struct Layers {
+    std::vector<cl_uint> of_pixels;
+    oit::Frame frame;  ///< that has these pixels
+};
+
+// As the reference has them. If it is a mean of pictures, as the device draws them, with the margin
+// of a lens.
+Layers layers_of(const cellist::Device& device, const oit::Frame& frame,
+                 const oit::Reference& reference) {
+    if (oit::reference_views(frame) == 0) return {reference.layers(), frame};
+    oit::Renderer renderer(device, frame);
+    renderer.draw();
+    return {renderer.layers(), renderer.drawn_frame()};
+}
+
 void run(const oit::TradeoffOptions& options) {
     const cellist::Device device = oit::choose_device(options);
     oit::Scene scene = oit::make_scene(options);
@@ -44,12 +60,15 @@ void run(const oit::TradeoffOptions& options) {
     oit::stand_on_floor(scene, options);
     const oit::Frame frame = oit::make_frame(scene, options);
     const oit::Reference reference = reference_of(device, frame);
-    if (reference.fragments.empty() && oit::reference_views(frame) == 0)
+    sweep.reference_views = oit::reference_views(frame);
+    const Layers counted = layers_of(device, frame, reference);
+    const cellist::Lengths layers(counted.of_pixels);
+    if (layers.total == 0)
         throw support::InputError("nothing transparent is in view of '" + oit::title_of(options) +
                                   "', so there is nothing to compare");
-    sweep.fragments = reference.fragments.size();
-    sweep.most_layers = reference.most_layers();
-    sweep.pixels_by_layers = oit::pixels_by_layers(reference);
+    sweep.fragments = layers.total;
+    sweep.most_layers = layers.longest;
+    sweep.pixels_by_layers = oit::pixels_by_layers(layers);
     sweep.left_out = oit::left_out(frame, options.methods);
 
     std::optional<oit::Pictures> pictures;
@@ -76,7 +95,8 @@ void run(const oit::TradeoffOptions& options) {
     });
 
     oit::print(sweep, options.writes_to_stdout() ? std::cerr : std::cout);
-    if (!options.heatmap.empty()) oit::write_layers(options.heatmap, reference.layers(), frame);
+    if (!options.heatmap.empty())
+        oit::write_layers(options.heatmap, counted.of_pixels, counted.frame);
     if (!options.json.empty())
         support::write_file(options.json, support::dump(to_json(sweep), 2) + '\n');
     if (!options.csv.empty()) support::write_file(options.csv, to_csv(sweep));

@@ -123,6 +123,8 @@ ordered_json to_json(const Sweep& sweep) {
                      {"json", support::file_or_null(options.json)},
                      {"csv", support::file_or_null(options.csv)},
                      {"html", support::file_or_null(options.html)}};
+    json["reference_views"] = sweep.reference_views;
+    json["lens_rays"] = options.quality.lens_rays;
     json["triangles"] = sweep.triangles;
     json["fragments"] = sweep.fragments;
     json["most_layers"] = sweep.most_layers;
@@ -165,6 +167,7 @@ std::string to_csv(const Sweep& sweep) {
                                      "size",
                                      "layers",
                                      "epsilon",
+                                     "lens_rays",
                                      "format",
                                      "samples",
                                      "coverage",

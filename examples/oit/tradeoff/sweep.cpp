@@ -31,10 +31,11 @@ std::uint32_t frames_in(std::uint32_t round, std::uint32_t frames) {
     return frames / rounds + (round < frames % rounds ? 1 : 0);
 }
 
-// All fragments, stored as floats.
-bool gives_nothing_up(const Measurement& measurement) {
+// All fragments, stored as floats, and the rays through a lens that were asked for.
+bool gives_nothing_up(const Sweep& sweep, const Measurement& measurement) {
     const auto& [method, quality] = measurement.setting;
-    return measurement.drawn() && method->exact && quality == exact_setting(quality).quality;
+    return measurement.drawn() && method->exact && quality == exact_setting(quality).quality &&
+           quality.lens_rays == sweep.options.quality.lens_rays;
 }
 
 // How many times as long `b` takes as `a`.
@@ -47,7 +48,7 @@ Relation relation(const Measurement& of, const Measurement& a, const Measurement
 
 const Measurement* all_layers(const Sweep& sweep) {
     for (const Measurement& measurement : sweep.measurements)
-        if (gives_nothing_up(measurement) &&
+        if (gives_nothing_up(sweep, measurement) &&
             measurement.setting.method == exact_setting(measurement.setting.quality).method)
             return &measurement;
     return nullptr;
@@ -113,10 +114,10 @@ double typical_spread(std::span<const Measurement> measurements) {
     return spreads.empty() ? 0 : support::median(std::move(spreads));
 }
 
-std::vector<std::uint64_t> pixels_by_layers(const Reference& reference) {
-    std::vector<std::uint64_t> bins(std::bit_width(reference.most_layers()) + 1);
-    for (const std::uint32_t count : reference.layers())
-        ++bins[static_cast<std::size_t>(std::bit_width(count))];
+std::vector<std::uint64_t> pixels_by_layers(const cellist::Lengths& layers) {
+    std::vector<std::uint64_t> bins(static_cast<std::size_t>(std::bit_width(layers.longest)) + 1);
+    for (const auto& [length, pixels] : layers.histogram)
+        bins[static_cast<std::size_t>(std::bit_width(length))] += pixels;
     return bins;
 }
 
@@ -148,7 +149,7 @@ std::vector<Relation> exact_methods(const Sweep& sweep) {
     const Measurement* all = all_layers(sweep);
     if (all == nullptr || sweep.options.all_samples) return result;
     for (const Measurement& measurement : sweep.measurements)
-        if (gives_nothing_up(measurement))
+        if (gives_nothing_up(sweep, measurement))
             result.push_back(relation(measurement, *all, measurement));
     return result;
 }

@@ -23,6 +23,8 @@ struct Sweep {
     TradeoffOptions options;
     std::string device;
     std::string driver;
+    /// Pictures that the reference is the mean of; 0 where it is drawn in double precision.
+    std::uint64_t reference_views = 0;
     std::uint64_t triangles = 0;
     std::uint64_t fragments = 0;
     std::uint64_t most_layers = 0;  ///< in any pixel
@@ -64,8 +66,8 @@ inline constexpr double psnr_enough = 96;
 /// in the middle.
 [[nodiscard]] double typical_spread(std::span<const Measurement> measurements);
 
-/// Pixels of the reference by layers, as Sweep has them.
-[[nodiscard]] std::vector<std::uint64_t> pixels_by_layers(const Reference& reference);
+/// Pixels by layers, as Sweep has them.
+[[nodiscard]] std::vector<std::uint64_t> pixels_by_layers(const cellist::Lengths& layers);
 
 /// Which measurements no other one beats: none is as fast and as accurate, and better in one of
 /// these. What is slower is slower by measurably_slower().

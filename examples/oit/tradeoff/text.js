@@ -1,6 +1,8 @@
 // What the settings of a report of cellist-tradeoff are called.
 const drawn = metrics.settings.filter(setting => setting.failure === undefined);
-const referenceName = metrics.coverage === "samples"
+const referenceName = metrics.lens !== null
+    ? `mean of ${metrics.reference_views.toLocaleString("en")} pictures`
+    : metrics.coverage === "samples"
     ? "reference in double precision" : "reference with 4,096 samples";
 const firstShown = drawn.findIndex(setting => setting.pareto);
 
@@ -14,6 +16,7 @@ const nameOf = setting => [
     setting.method + (setting.size === null ? "" : ":" + setting.size),
     setting.layers === null ? "" : setting.layers + (setting.layers === 1 ? " layer" : " layers"),
     setting.epsilon === 0 ? "" : "ε " + digits(setting.epsilon),
+    setting.lens_rays === metrics.lens_rays ? "" : setting.lens_rays + " rays",
     setting.format === "float" ? "" : setting.format,
     metrics.coverage === "all" ? samplesOf(setting) : "",
 ].filter(part => part !== "").join(", ");

@@ -43,9 +43,11 @@ bool has(const std::vector<std::string>& texts, const std::string& text) {
 
 TEST_CASE("settings are all different, and cover methods, formats, layers, early ends and sizes") {
     const oit::Scene scene = blended_knot();
-    const std::vector<std::string> texts = texts_of(settings_for(settings_frame(scene), 20));
+    const oit::Frame frame = settings_frame(scene);
+    const std::vector<std::string> texts = texts_of(settings_for(frame, 20));
     CHECK(std::set<std::string>(texts.begin(), texts.end()).size() == texts.size());
     for (const oit::MethodInfo& method : oit::methods()) {
+        if (!method.refusal(frame, features_of(frame)).empty()) continue;
         INFO(method.name);
         CHECK(std::ranges::is_sorted(method.sizes));
         CHECK(std::ranges::any_of(texts, [&](const std::string& text) {
@@ -61,6 +63,24 @@ TEST_CASE("settings are all different, and cover methods, formats, layers, early
           "--method linked --epsilon 0.1", "--method adaptive:4", "--method weighted"})
         CHECK(has(texts, text));
     CHECK_FALSE(has(texts, "--method linked --layers 32"));
+}
+
+TEST_CASE("settings through a lens cover its methods, layers and numbers of rays") {
+    const oit::Scene scene = blended_knot();
+    oit::Frame frame = settings_frame(scene);
+    frame.lens = oit::Lens{.radius = 0.1, .focus = 4};
+    const std::vector<std::string> texts = texts_of(settings_for(frame, 20));
+    CHECK(std::set<std::string>(texts.begin(), texts.end()).size() == texts.size());
+    for (const std::string text :
+         {"--method linked", "--method linked --layers 1", "--method linked --layers 16",
+          "--method linked --lens-rays 8", "--method linked --lens-rays 128", "--method counted",
+          "--method kbuffer:8", "--method blur", "--method peeled:1", "--method peeled:16",
+          "--method positions:8", "--method positions:256"})
+        CHECK(has(texts, text));
+    for (const std::string& text : texts) {
+        CHECK_FALSE(contains(text, "weighted"));
+        CHECK_FALSE(contains(text, "epsilon"));
+    }
 }
 
 TEST_CASE("settings that a method refuses are left out") {
@@ -133,7 +153,7 @@ TEST_CASE("larger sizes of an approximation are not less accurate") {
     const oit::Frame frame = settings_frame(scene);
     const oit::Reference reference = oit::draw_reference(frame);
     for (const oit::MethodInfo& method : oit::methods()) {
-        if (method.sizes.empty()) continue;
+        if (method.sizes.empty() || !method.refusal(frame, features_of(frame)).empty()) continue;
         INFO(method.name);
         const auto measured = [&](std::uint32_t size) {
             return measure(device(), frame, {&method, {.size = size}}, reference, 1);

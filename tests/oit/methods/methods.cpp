@@ -100,11 +100,11 @@ TEST_CASE("every method gives the same bits every time, and no colour that is no
 
 // What an approximation makes of a single layer is exact, and of many it is near the truth.
 TEST_CASE("approximations are exact where there is one layer, and near where there are more") {
+    const oit::Scene many = nested_knots(Blend::over);
     for (const oit::MethodInfo& method : oit::methods()) {
-        if (method.exact) continue;
+        if (method.exact || is_refused(method, knots_frame(many))) continue;
         for (const int samples : {1, 4}) {
             INFO(method.name << ", " << samples << " samples");
-            const oit::Scene many = nested_knots(Blend::over);
             const auto psnr = [&](const oit::Scene& scene, bool single) {
                 const oit::Frame frame = knots_frame(scene, {.samples = samples});
                 oit::Renderer renderer(device(), frame, method);

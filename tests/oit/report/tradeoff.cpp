@@ -96,7 +96,8 @@ TEST_CASE("times whose spreads overlap are not distinct") {
 TEST_CASE("pixels are counted by layers: none, 1, 2 to 3, 4 to 7 and so on") {
     oit::Reference reference;
     reference.offsets = {0, 0, 1, 3, 6, 10, 18};
-    CHECK(oit::pixels_by_layers(reference) == std::vector<std::uint64_t>{1, 1, 2, 1, 1});
+    CHECK(oit::pixels_by_layers(cellist::Lengths(reference.layers())) ==
+          std::vector<std::uint64_t>{1, 1, 2, 1, 1});
 }
 
 TEST_CASE("half of the times are within the spread") {
@@ -168,7 +169,7 @@ TEST_CASE("lines of CSV have a field for each name") {
     REQUIRE(lines.size() == 5);
     CHECK(lines[0].starts_with("options,method,size,layers,"));
     CHECK(lines[1].starts_with(
-        "--method linked --layers 8,linked,,8,0.0,float,1,samples,2.0,2.0,2.0,2.0,1000,13.5,"));
+        "--method linked --layers 8,linked,,8,0.0,32,float,1,samples,2.0,2.0,2.0,2.0,1000,13.5,"));
     CHECK(lines[4].ends_with(",\"too large, \"\"by far\"\"\""));
     const std::size_t commas = count_of(lines[0], ",");
     for (std::size_t i = 1; i < 4; ++i) CHECK(count_of(lines[i], ",") == commas);
