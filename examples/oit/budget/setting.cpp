@@ -81,8 +81,10 @@ std::vector<Setting> settings_for(const Frame& frame, std::uint64_t most_layers)
         else
             for (const std::uint32_t size : method.sizes) add(method, &Quality::size, size);
         if (!method.cuts) continue;
+        // With exact coverage, fragments of one surface share a pixel, so there are no K nearest.
         for (const std::uint32_t layers : layer_counts)
-            if (layers < most_layers) add(method, &Quality::layers, layers);
+            if (layers < most_layers && base.coverage == Coverage::samples)
+                add(method, &Quality::layers, layers);
         if (!frame.lens)
             for (const float epsilon : tried_epsilons) add(method, &Quality::epsilon, epsilon);
         else

@@ -83,6 +83,14 @@ TEST_CASE("settings through a lens cover its methods, layers and numbers of rays
     }
 }
 
+TEST_CASE("settings with exact coverage have all layers") {
+    const oit::Scene scene = blended_knot();
+    const oit::Frame frame = settings_frame(scene, {.coverage = oit::Coverage::exact});
+    const std::vector<oit::Setting> settings = settings_for(frame, 20);
+    CHECK(has(texts_of(settings), "--method linked --epsilon 0.1 --samples exact"));
+    for (const oit::Setting& setting : settings) CHECK_FALSE(setting.quality.layers);
+}
+
 TEST_CASE("settings that a method refuses are left out") {
     const oit::Scene scene = blended_knot(oit::Blend::absorb);
     const oit::Frame frame = settings_frame(scene);
