@@ -189,13 +189,13 @@ std::unique_ptr<Method> make_unsliced(FragmentSource& source, const cellist::Lis
         });
 }
 
-// What a pixel's media and functions of one's own need differs from place to place in it.
+// Media and functions of one's own need distances, which differ within a pixel.
 std::string refusal_of_lists(const Frame& frame, const FrameFeatures& features) {
     if (frame.quality.coverage == Coverage::exact &&
         (features.has(Blend::absorb) || features.has(Blend::user)))
-        return "exact coverage blends over, additive and multiplicative surfaces; draw media and "
-               "functions with --samples 8";
-    return refuses_nothing(frame, features);
+        return "exact coverage cannot blend absorbing surfaces or functions of your own: use "
+               "--samples 8";
+    return {};
 }
 
 template <cellist::Storage storage>

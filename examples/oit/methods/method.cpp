@@ -76,6 +76,4 @@ std::string refuses_pinholes(const Frame& frame, const FrameFeatures&) {
     return frame.lens ? "" : "it draws through a lens only: add --lens";
 }
 
-std::string refuses_nothing(const Frame&, const FrameFeatures&) { return {}; }
-
 }  // namespace oit

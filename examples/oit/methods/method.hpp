@@ -107,7 +107,4 @@ public:
 /// For methods that draw through a lens only.
 [[nodiscard]] std::string refuses_pinholes(const Frame& frame, const FrameFeatures& features);
 
-/// For methods that draw every frame.
-[[nodiscard]] std::string refuses_nothing(const Frame& frame, const FrameFeatures& features);
-
 }  // namespace oit
