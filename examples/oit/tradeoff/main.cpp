@@ -59,6 +59,10 @@ void run(const oit::TradeoffOptions& options) {
                      .frames = options.frames};
     oit::stand_on_floor(scene, options);
     const oit::Frame frame = oit::make_frame(scene, options);
+    sweep.left_out = oit::left_out(frame, options.methods);
+    if (sweep.left_out.size() == options.methods.size())
+        throw support::InputError("the method " + std::string(sweep.left_out.front().method) +
+                                  " cannot draw this: " + sweep.left_out.front().reason);
     const oit::Reference reference = reference_of(device, frame);
     sweep.reference_views = oit::reference_views(frame);
     const Layers counted = layers_of(device, frame, reference);
@@ -69,16 +73,12 @@ void run(const oit::TradeoffOptions& options) {
     sweep.fragments = layers.total;
     sweep.most_layers = layers.longest;
     sweep.pixels_by_layers = oit::pixels_by_layers(layers);
-    sweep.left_out = oit::left_out(frame, options.methods);
 
     std::optional<oit::Pictures> pictures;
     if (!options.html.empty()) pictures.emplace(reference, frame);
     const std::vector<oit::Setting> settings =
         options.all_samples ? oit::settings_of_samples(frame)
                             : oit::settings_of(frame, sweep.most_layers, options.methods);
-    if (settings.empty())
-        throw support::InputError("the method " + std::string(sweep.left_out.front().method) +
-                                  " cannot draw this: " + sweep.left_out.front().reason);
     std::size_t done = 0;
     support::Progress more_rounds("more rounds");
     sweep.measurements = oit::measure_interleaved(

@@ -28,7 +28,7 @@ const summaryOf = setting =>
 byId("scene").textContent = metrics.scene;
 byId("about").textContent =
     `${metrics.width}×${metrics.height}${metrics.eyes > 1 ? ", two eyes" : ""}, ` +
-    `${samplesOf(metrics)} a pixel, view ` +
+    `${samplesOf(metrics)}${metrics.coverage === "samples" ? " a pixel" : ""}, view ` +
     `${metrics.view.map(angle => digits(angle)).join("°, ")}°, opacity ` +
     `${digits(metrics.alpha)}. ${metrics.triangles.toLocaleString("en")} triangles, ` +
     `${metrics.fragments.toLocaleString("en")} fragments, up to ${metrics.most_layers} ` +

@@ -61,10 +61,7 @@ TradeoffOptions parse_tradeoff_options(int count, const char* const* arguments) 
     line.add_check([&] {
         const support::IdleOption idle[] = {
             {"--methods", options.all_samples,
-             "--samples all compares them with the method linked: leave out --methods"},
-            {"--heatmap", options.lens || options.quality.coverage == Coverage::exact,
-             "--heatmap shows the layers of a reference in double precision, which --lens and "
-             "--samples exact do not have: leave one of them out"}};
+             "--samples all draws with the method linked: leave out --methods"}};
         line.refuse_idle(idle);
         if (options.all_samples) options.methods = {"linked"};
         const support::NamedFile outputs[] = {{"--heatmap", options.heatmap},
