@@ -41,15 +41,14 @@ struct Tick {
     std::string label;
 };
 
-// Three digits are enough to read a scale by.
+// Rounded to three digits.
 std::string label_of(double value) {
     if (value == 0) return "0";
     const double unit = std::pow(10, 2 - std::floor(std::log10(value)));
     return shortest(std::round(value * unit) / unit);
 }
 
-// 0, the middle and the greatest value. The middle of counts is the whole number below it, at its
-// own place.
+// Ticks at 0, in the middle and at the greatest value. For counts, the middle is rounded down.
 std::vector<Tick> ticks_of(double most, bool are_counts) {
     std::vector<Tick> ticks{{0, "0"}};
     const auto add = [&](double value) {
@@ -70,7 +69,7 @@ public:
 
     [[nodiscard]] int height() const { return dot_ * (label_top + character_height + margin); }
 
-    // Labels do not touch: the middle tick is a third of the length from both ends, or more.
+    // Labels do not touch, as the middle tick is at least a third of the length from both ends.
     [[nodiscard]] int least_width() const {
         int widest = 0;
         for (const Tick& tick : ticks_) widest = std::max(widest, width_of(tick.label));

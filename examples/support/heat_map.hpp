@@ -14,7 +14,7 @@ struct HeatMap {
     std::span<const double> values;  ///< row by row from the top; finite and not negative
     int width, height;               ///< in pixels, at least 1
     std::string caption;             ///< what the values are: letters and spaces
-    bool are_counts = true;          ///< whole numbers, so the scale has no other ones
+    bool are_counts = true;          ///< values are whole numbers, and so are the labels
 };
 
 /// 8-bit sRGB, row by row from the top.
@@ -27,11 +27,10 @@ struct HeatPicture {
 /// rises evenly ("inferno" of matplotlib, by S. van der Walt and N. Smith).
 [[nodiscard]] std::array<std::uint8_t, 3> heat_colour(double part);
 
-/// The map with a scale below it, which hides no value. The picture is wider than the map if the
-/// labels of the scale need the room.
+/// The map, and a scale below it. The picture is wider than the map if the labels need the room.
 [[nodiscard]] HeatPicture heat_picture(const HeatMap& map);
 
-/// Writes heat_picture() in an 8-bit format. A format of floats holds the values alone, as grey.
+/// Writes heat_picture() in an 8-bit format, and the values alone, as grey, in a format of floats.
 /// Throws as write_file() does.
 void write_heat_map(const std::filesystem::path& path, const HeatMap& map);
 
