@@ -193,6 +193,14 @@ TEST_CASE("both programs draw the same heat map, with a scale") {
     CHECK(tradeoff.run(view + "- --methods weighted").out == picture);
 }
 
+TEST_CASE("both programs draw the same heat map of exact coverage") {
+    const Program oit(CELLIST_OIT_PROGRAM), tradeoff(CELLIST_TRADEOFF_PROGRAM);
+    const std::string view = "knot.obj --size 24x18 --frames 1 --heatmap h.pfm --samples ";
+    REQUIRE(oit.run(view + "exact").exit_code == 0);
+    REQUIRE(tradeoff.run(view + "all").exit_code == 0);
+    CHECK(read_file(tradeoff.folder() / "h.pfm") == read_file(oit.folder() / "h.pfm"));
+}
+
 TEST_CASE("a scene with no layers has a black heat map") {
     const Program program(CELLIST_OIT_PROGRAM);
     const ProgramResult result =
