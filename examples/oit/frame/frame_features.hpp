@@ -11,7 +11,7 @@ namespace oit {
 /// The features that a frame uses. Kernels are compiled for these and no more.
 struct FrameFeatures {
     bool opaque = false;          ///< something hides fragments
-    bool stores_opaque = false;   ///< as Frame::stores_opaque(), and some fragments hide all others
+    bool stores_opaque = false;   ///< as Frame::stores_opaque(), and some fragments hide all behind
     bool opacities = false;       ///< vertices of transparent surfaces have opacities
     bool tints = false;           ///< vertices have tints
     bool alpha_varies = false;    ///< fragments differ in opacity

@@ -68,11 +68,11 @@ struct Placed {
 struct Sampling {
     int samples = 1;           ///< of a pixel: 1, 2, 4 or 8
     bool depth_range = false;  ///< fragments have slopes of their depth
-    bool exact = false;        ///< a fragment for every pixel of which a triangle overlaps a part
+    bool exact = false;        ///< a triangle has a fragment in each pixel that it overlaps
 };
 
 /// The beginning of a source that loads triangles again by the numbers of their pieces, and finds
-/// what they cover of a pixel: see raster_load_piece in clip.clh, and pixel.clh.
+/// the part of a pixel that they cover: see raster_load_piece in clip.clh, and pixel.clh.
 [[nodiscard]] std::string triangle_text(const cellist::Device& device, const Sampling& sampling);
 
 /// A kernel of the rasteriser. `uses` names the types of the pass, as in cellist::Kernel.

@@ -86,7 +86,7 @@ static inline uint raster_block_place(const RasterBox* box, int x, int y) {
     return (box->x + x) * RASTER_BLOCK_PIXELS + 65536u * ((box->y + y) * RASTER_BLOCK_PIXELS);
 }
 
-// False where nothing of a block's pixels is covered, because all lies outside of one edge.
+// False if all that could be covered in a block's pixels is outside of one edge.
 static inline bool raster_touches(const RasterTriangle* t, const RasterBox* box, int x, int y) {
 #ifdef RASTER_EXACT
     const int reach = RASTER_SUBPIXELS / 2;
