@@ -91,15 +91,19 @@ std::vector<double> ticks_of(double most, bool are_counts, int width = 400) {
 }
 
 TEST_CASE("ticks of counts are whole numbers at their own place") {
-    using Catch::Matchers::Approx;
-    const auto close = [](const std::vector<double>& parts) { return Approx(parts).margin(0.005); };
-    CHECK_THAT(ticks_of(0, true), close({0}));
-    CHECK_THAT(ticks_of(1, true), close({0, 1}));
-    CHECK_THAT(ticks_of(2, true), close({0, 0.5, 1}));
-    CHECK_THAT(ticks_of(3, true), close({0, 1.0 / 3, 1}));
-    CHECK_THAT(ticks_of(41, true), close({0, 20.0 / 41, 1}));
-    CHECK_THAT(ticks_of(1, false), close({0, 0.5, 1}));
-    CHECK_THAT(ticks_of(3e-7, false), close({0, 0.5, 1}));
+    const auto check_ticks = [](const std::vector<double>& ticks,
+                                const std::vector<double>& parts) {
+        REQUIRE(ticks.size() == parts.size());
+        for (std::size_t i = 0; i < ticks.size(); ++i)
+            CHECK(ticks[i] == Approx(parts[i]).margin(0.005));
+    };
+    check_ticks(ticks_of(0, true), {0});
+    check_ticks(ticks_of(1, true), {0, 1});
+    check_ticks(ticks_of(2, true), {0, 0.5, 1});
+    check_ticks(ticks_of(3, true), {0, 1.0 / 3, 1});
+    check_ticks(ticks_of(41, true), {0, 20.0 / 41, 1});
+    check_ticks(ticks_of(1, false), {0, 0.5, 1});
+    check_ticks(ticks_of(3e-7, false), {0, 0.5, 1});
 }
 
 // The grey values of a PFM file, row by row from the top.
