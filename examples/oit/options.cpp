@@ -66,7 +66,7 @@ void check_outputs(const Options& options) {
 // Options that have no effect with the other options, or contradict them.
 void refuse_idle_options(const support::CommandLine& line, const Options& options) {
     const bool has_budget = options.budget.has_value(), one_frame = options.frames == 1;
-    const bool has_nodes = method_named(options.method).has_nodes;
+    const MethodInfo& method = method_named(options.method);
     const bool is_exact = options.quality.coverage == Coverage::exact;
     const auto idle_if = [](bool idle, const std::string& before, const char* name,
                             const char* after) {
@@ -86,8 +86,8 @@ void refuse_idle_options(const support::CommandLine& line, const Options& option
         return idle_if(!has_budget, "", name, " is for --budget, which is not given");
     };
     const auto of_nodes = [&](const char* name) {
-        return idle_if(!has_nodes, "--method " + options.method + " keeps no fragments: leave out ",
-                       name, "");
+        return idle_if(!method.has_nodes,
+                       "--method " + options.method + " keeps no fragments: leave out ", name, "");
     };
     const auto of_frames = [&](const char* name) {
         return idle_if(one_frame, "", name, " needs several frames: --frames is 1");
@@ -112,6 +112,8 @@ void refuse_idle_options(const support::CommandLine& line, const Options& option
         {"--layers", is_exact && options.quality.layers.has_value(),
          "--samples exact blends all triangles of a pixel: leave out --layers"},
         {"--lens-rays", !options.lens, "--lens-rays is for --lens, which is not given"},
+        {"--lens-rays", method.draws_views,
+         "--method " + options.method + " sends no rays: leave out --lens-rays"},
         {"--budget", options.lens.has_value(),
          "--budget has no error bound for --lens: leave one of them out"},
         {"--budget", is_exact,

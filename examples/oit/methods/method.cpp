@@ -66,7 +66,7 @@ std::uint64_t one_pass(const SurveyResult&, const Quality&) { return 1; }
 std::uint64_t two_passes(const SurveyResult&, const Quality&) { return 2; }
 
 std::string needs_all_fragments(const Frame& frame) {
-    if (frame.lens) return "a lens needs the layers of each pixel";
+    if (frame.lens) return "a lens needs a list of layers for each pixel";
     if (frame.quality.coverage == Coverage::exact)
         return "exact coverage needs all triangles of each pixel";
     return {};

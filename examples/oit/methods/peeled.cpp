@@ -58,6 +58,12 @@ private:
     LensGather lens_;
 };
 
+std::string peeled_refusal(const Frame& frame, const FrameFeatures& features) {
+    if (frame.lens && frame.quality.layers)
+        return "its size is the number of layers: leave out --layers";
+    return refuses_pinholes(frame, features);
+}
+
 const MethodRegistration peeled_method(
     {.name = "peeled",
      .summary = "rays through the nearest layers, 4 by default, from depth peeling (Lee et al. "
@@ -65,7 +71,7 @@ const MethodRegistration peeled_method(
      .position = 180,
      .exact = false,
      .sizes = layer_counts,
-     .refusal = refuses_pinholes,
+     .refusal = peeled_refusal,
      .make = make_peeling<Peeled>,
      .passes = [](const SurveyResult&, const Quality& quality) -> std::uint64_t {
          return quality.size.value_or(default_layers) + 1;

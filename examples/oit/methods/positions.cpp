@@ -39,6 +39,12 @@ private:
     cellist::Kernel copy_;
 };
 
+std::string positions_refusal(const Frame& frame, const FrameFeatures& features) {
+    if (frame.lens && frame.quality.layers)
+        return "its pictures show all layers: leave out --layers";
+    return refuses_pinholes(frame, features);
+}
+
 const MethodRegistration positions_method(
     {.name = "positions",
      .summary = "the mean of pictures from places on the lens, 32 by default (Haeberli, Akeley "
@@ -48,7 +54,7 @@ const MethodRegistration positions_method(
      .has_nodes = false,
      .draws_views = true,
      .sizes = position_counts,
-     .refusal = refuses_pinholes,
+     .refusal = positions_refusal,
      .make = [](FragmentSource& source) -> std::unique_ptr<Method> {
          return std::make_unique<Positions>(source);
      },
