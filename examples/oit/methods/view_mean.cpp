@@ -54,6 +54,16 @@ void ViewMean::draw(double time, std::size_t count, const Views& views,
     }
 }
 
+Reference ViewMean::reference() const {
+    Reference reference;
+    reference.width = static_cast<std::size_t>(frame_.width());
+    reference.height = static_cast<std::size_t>(frame_.height());
+    for (const cl_float4& pixel : image_.download())
+        reference.image.emplace_back(pixel.s[0], pixel.s[1], pixel.s[2]);
+    reference.ambiguous.resize(reference.image.size());
+    return reference;
+}
+
 std::uint64_t ViewMean::device_bytes() const {
     return renderer_.device_bytes() + raster::bytes_of(image_);
 }
@@ -79,13 +89,7 @@ Reference reference_of(const cellist::Device& device, const Frame& frame,
     ViewMean mean(device, frame);
     mean.draw(frame.time, count,
               frame.lens ? views_through_lens(frame, count) : views_of_samples(frame), progress);
-    Reference reference;
-    reference.width = static_cast<std::size_t>(frame.width());
-    reference.height = static_cast<std::size_t>(frame.height());
-    for (const cl_float4& pixel : mean.image().download())
-        reference.image.emplace_back(pixel.s[0], pixel.s[1], pixel.s[2]);
-    reference.ambiguous.resize(reference.image.size());
-    return reference;
+    return mean.reference();
 }
 
 }  // namespace oit

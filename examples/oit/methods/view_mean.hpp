@@ -28,6 +28,8 @@ public:
 
     /// The linear mean, eye by eye, row by row from the top.
     [[nodiscard]] const cellist::Buffer<cl_float4>& image() const { return image_; }
+    /// The mean as a reference, which has no fragments. Blocks.
+    [[nodiscard]] Reference reference() const;
     [[nodiscard]] std::uint64_t device_bytes() const;
 
 private:

@@ -54,12 +54,7 @@ TEST_CASE("exact coverage is nearer to many samples than eight samples") {
             return std::vector<raster::View>{
                 oit::moved_by(frame.views[0], {offset(i % across), offset(i / across)})};
         });
-        oit::Reference reference;
-        reference.width = static_cast<std::size_t>(frame.width());
-        reference.height = static_cast<std::size_t>(frame.height());
-        for (const cl_float4& pixel : mean.image().download())
-            reference.image.emplace_back(pixel.s[0], pixel.s[1], pixel.s[2]);
-        reference.ambiguous.resize(reference.image.size());
+        const oit::Reference reference = mean.reference();
         const double of_areas = oit::compare(reference, drawn(frame), {}).psnr_db;
         frame.quality = {.samples = 8};
         const double by_samples = oit::compare(reference, drawn(frame), {}).psnr_db;

@@ -58,13 +58,7 @@ oit::Reference mean_of_views(const oit::Frame& frame) {
     constexpr std::size_t views = 200;
     oit::ViewMean mean(device(), frame);
     mean.draw(frame.time, views, oit::views_through_lens(frame, views));
-    oit::Reference reference;
-    reference.width = static_cast<std::size_t>(frame.width());
-    reference.height = static_cast<std::size_t>(frame.height());
-    for (const cl_float4& pixel : mean.image().download())
-        reference.image.emplace_back(pixel.s[0], pixel.s[1], pixel.s[2]);
-    reference.ambiguous.resize(reference.image.size());
-    return reference;
+    return mean.reference();
 }
 
 double psnr(const oit::Reference& reference, const std::vector<cl_float4>& image) {
