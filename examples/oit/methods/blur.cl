@@ -31,8 +31,7 @@ kernel void oit_blur(global const float4* sharp, global const uint2* ranges, con
     OitPixel pixel;
     if (!oit_pixel(OIT_SCREEN_PASS, &pixel)) return;
     const int width = views[pixel.eye].width, height = views[pixel.eye].height;
-    if (min(pixel.x, pixel.y) < margin || pixel.x >= width - margin || pixel.y >= height - margin)
-        return;
+    if (oit_is_in_margin(&pixel, width, height, margin)) return;
     const uint2 range = ranges[oit_tile_of(&pixel)];
     if (range.x > range.y) return;
     const float4 own = sharp[pixel.pixel];

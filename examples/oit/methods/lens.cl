@@ -166,8 +166,7 @@ kernel void oit_gather(OIT_NODES, global const uint4* spans, global const float4
     OitPixel pixel;
     if (!oit_pixel(OIT_SCREEN_PASS, &pixel)) return;
     const int width = views[pixel.eye].width, height = views[pixel.eye].height;
-    if (min(pixel.x, pixel.y) < margin || pixel.x >= width - margin || pixel.y >= height - margin)
-        return;
+    if (oit_is_in_margin(&pixel, width, height, margin)) return;
     const uint2 range = ranges[oit_tile_of(&pixel)];
     float3 sum = pixel.background;
     uint rays = 1;
