@@ -1,4 +1,4 @@
-// Copies the pixels of an image without a margin on each side.
+// Copies an image without the margin on each side.
 kernel void oit_cut_out(global const float4* wide, global float4* image, int margin) {
     const size_t x = get_global_id(0), y = get_global_id(1), eye = get_global_id(2);
     const size_t width = get_global_size(0), height = get_global_size(1);

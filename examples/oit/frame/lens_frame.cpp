@@ -9,7 +9,7 @@
 namespace oit {
 namespace {
 
-// The radius of the greatest circle of confusion in pixels, if the margin is wide enough for it.
+// The radius of the largest circle of confusion in pixels, but at most the widest margin.
 int margin_of(const Frame& frame) {
     const FrameFeatures features = features_of(frame);
     const auto nearness = [](float depth) { return 1 / static_cast<double>(depth); };

@@ -8,11 +8,11 @@
 
 namespace oit {
 
-/// A frame through a lens needs what lies beside its image, and blurs into it: a frame with a
-/// margin, from which the image is cut out.
+/// A frame through a lens, widened by a margin because surfaces beside the image blur into it. The
+/// image is cut out of the widened picture.
 class LensFrame {
 public:
-    /// Of the shorter side of the image: the widest margin. Surfaces beyond are not seen.
+    /// The widest margin, as a part of the image's shorter side. Surfaces beyond it are not seen.
     static constexpr double margin_max = 0.25;
 
     /// Refers to the device and the frame, which must outlive it.
@@ -21,9 +21,9 @@ public:
     /// The frame with the margin. Its fragments have the slopes of their depth.
     [[nodiscard]] const Frame& widened() const { return widened_; }
 
-    /// Takes the frame's views and time, which may have changed.
+    /// Adopts the frame's views and time, which may have changed.
     void follow();
-    /// Cuts out the image of what came of the widened frame. Does not block.
+    /// Copies the image out of the picture of the widened frame. Does not block.
     void cut_out(const FragmentSource& source);
 
     /// The linear image, eye by eye, row by row from the top.

@@ -11,8 +11,8 @@ namespace {
 
 glm::dvec3 direction(const cl_float (&row)[4]) { return glm::vec3(row[0], row[1], row[2]); }
 
-// The part of a row that does not move with the depth: the axis of the image, as long as the focal
-// length in sub-pixels.
+// The part of a row at right angles to the viewing direction: the axis of the image, scaled by the
+// focal length in sub-pixels.
 glm::dvec3 axis(const cl_float (&row)[4], const raster::View& view) {
     const glm::dvec3 forward = direction(view.row_w);
     return direction(row) - glm::dot(direction(row), forward) * forward;

@@ -2,7 +2,7 @@
 // (Potmesil, Chakravarty 1981), in which a neighbour counts if its own circle reaches the pixel.
 
 #ifdef OIT_STORES
-// The depth is that of the nearest surface.
+// Stores the depth of the nearest surface in each pixel.
 #define OIT_TARGET volatile global uint* depth_bits_of_nearest
 #define OIT_TARGET_PASS depth_bits_of_nearest
 
@@ -13,10 +13,11 @@ static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitLocatio
 
 #else
 
-// Neighbours that a pixel looks at, for each ray of the other methods.
+// Neighbours that a pixel reads for each ray of --lens-rays.
 #define OIT_TAPS_PER_RAY 4
 
-// Takes the picture that was drawn: sharp has its colours, and 1 / depth, 0 where there is nothing.
+// Copies the pinhole picture to `sharp`: its colours, and 1 / depth, which is 0 where there is no
+// surface.
 kernel void oit_take_sharp(global const uint* depth_bits_of_nearest, global float4* sharp,
                            volatile global uint* ranges, OIT_SCREEN) {
     OitPixel pixel;
@@ -38,7 +39,7 @@ kernel void oit_blur(global const float4* sharp, global const uint2* ranges, con
     const float own_circle = own.w > 0.0f ? scale * fabs(own.w - focus) : 1e30f;
     const float circle = oit_circle(range, scale, focus);
     const uint taps = OIT_TAPS_PER_RAY * rays;
-    const float area = circle * circle / (float)taps;  // of a tap; all areas without pi
+    const float area = circle * circle / (float)taps;  // of a tap; no area has the factor pi
     float weights = 1.0f / fmax(3.0f * own_circle * own_circle, 1.0f);
     if (!(own.w > 0.0f)) weights = 0.1f / (float)taps;
     float3 sum = weights * own.xyz;
@@ -50,7 +51,7 @@ kernel void oit_blur(global const float4* sharp, global const uint2* ranges, con
         if (x < 0 || y < 0 || x >= width || y >= height) continue;
         const float4 other = sharp[((size_t)pixel.eye * height + y) * width + x];
         float reach = other.w > 0.0f ? scale * fabs(other.w - focus) : circle;
-        // What is farther away does not leak over what is in focus.
+        // A farther surface does not leak over a nearer one in focus.
         if (other.w < own.w) reach = fmin(reach, own_circle);
         if (distance > fmax(reach, 0.5f)) continue;
         const float weight = area / fmax(reach * reach, 0.25f);

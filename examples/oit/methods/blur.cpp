@@ -1,5 +1,5 @@
-// Depth of field as from a picture without layers: the pinhole picture, and the depth of the
-// nearest surface in each pixel.
+// Depth of field without layers, from the pinhole picture and the depth of the nearest surface in
+// each pixel.
 #include "methods/lens_ranges.hpp"
 #include "methods/lists.hpp"
 #include "oit_kernels.hpp"

@@ -2,18 +2,18 @@
 // (Lee, Eisemann, Seidel, SIGGRAPH 2010, with planes instead of slabs of depth).
 //
 // In the space of the picture's x and y and of w = 1 / depth, lines stay lines and planes planes.
-// A fragment is a piece of a plane over its pixel. A ray through the lens runs along a line: at w,
-// it is `speed` * (w - focus) pixels from the pixel that it makes. It visits the pixels on its way
-// front to back, and in each the planes that it crosses there.
+// A fragment is a piece of a plane over its pixel. A ray through the lens is a line: at w, it is
+// `speed` * (w - focus) pixels away from the pixel that gets its light. It visits the pixels on its
+// way front to back, and blends the planes that it crosses in each.
 //
-//   spans   of each pixel: where its planes begin, how many there are, and the bits of `reach`: by
-//           how much w differs, at most, between a plane's centre and the rest of its pixel
-//   planes  nearest first: w at the pixel's centre, how it grows a pixel along x and y, and the
+//   spans   for each pixel: where its planes begin, their number, and the bits of `reach`: the
+//           largest difference of w between the centre of a plane and the rest of it
+//   planes  nearest first: w at the pixel's centre, its growth per pixel along x and y, and the
 //           bits of the node's index
-//   ranges  of w in each tile: see lens_common.clh
+//   ranges  the range of w in each tile: see lens_common.clh
 //
 // The method defines where nodes are:
-//   OIT_NODES, OIT_NODES_PASS  parameters, and the same as arguments
+//   OIT_NODES, OIT_NODES_PASS  the parameters, and the arguments that pass them on
 //   OIT_FOR_EACH_NODE(n)       a loop over the indices of `pixel`, nearest first
 //   OIT_NODE_AT(n)             the node
 
@@ -25,13 +25,15 @@
 #define OIT_NODE_AT(n) cellist_get(fragments, n)
 #endif
 
-// Rays for each pixel of area that the circle of confusion has, and at least.
+// Rays for each pixel in the area of the circle of confusion, and the fewest rays for a blurred
+// pixel.
 #define OIT_RAYS_PER_AREA 2.0f
 #define OIT_LEAST_RAYS 8.0f
-// A ray ends where no more than this part of the light passes.
+// A ray ends when its transmittance is at most this.
 #define OIT_LEAST_LIGHT 0x1p-10f
 
-// Writes the planes of each pixel. Those that have no room are left out; `used` tells.
+// Writes the planes of each pixel. A pixel whose planes do not fit gets none. `used` counts all
+// planes.
 kernel void oit_find_planes(OIT_NODES, global uint4* spans, global float4* planes,
                             const uint capacity, volatile global uint* used,
                             volatile global uint* ranges, OIT_SCREEN) {
@@ -56,7 +58,7 @@ kernel void oit_find_planes(OIT_NODES, global uint4* spans, global float4* plane
         const OitFragment fragment = oit_unpack(&pixel.frame, OIT_NODE_AT(n));
         const float w = 1.0f / fragment.depth;
         const float slope_x = w * fragment.slope_x, slope_y = w * fragment.slope_y;
-        // Planes may not reach beyond infinity or double their w.
+        // The bound keeps w positive, and at most 1.5 times that of the centre.
         const float own = fmin(0.5f * (fabs(slope_x) + fabs(slope_y)), 0.5f * w);
         reach = fmax(reach, own);
         least = fmin(least, w - own);
@@ -69,8 +71,8 @@ kernel void oit_find_planes(OIT_NODES, global uint4* spans, global float4* plane
 
 #define OIT_CROSSINGS 4
 
-// Planes that a ray crosses in a pixel, nearest first. One waits until so many farther ones have
-// been found.
+// The planes that a ray crosses in a pixel, nearest first. They come in the order of their centres,
+// so the nearest is blended only when the buffer is full or the pixel ends.
 typedef struct {
     int count;
     float w[OIT_CROSSINGS];
@@ -99,12 +101,12 @@ static inline void oit_add_crossing(OitCrossings* found, float w, uint node) {
     found->node[at] = node;
 }
 
-// The light along the ray between two values of w, the greater first.
+// The light along a ray from `w_in` to the lesser `w_end`.
 static inline OitBlend oit_trace(OIT_NODES, global const uint4* spans, global const float4* planes,
                                  const OitPixel* pixel, int width, int height, float2 speed,
                                  float focus, float w_in, float w_end) {
     OitBlend light = oit_empty_blend();
-    // In coordinates from the pixel that are mirrored so that the ray runs towards less.
+    // Coordinates are relative to the pixel, and mirrored so that x and y fall along the ray.
     const int sign_x = speed.x < 0.0f ? -1 : 1, sign_y = speed.y < 0.0f ? -1 : 1;
     const float speed_x = fabs(speed.x), speed_y = fabs(speed.y);
     const float slow_x = 1.0f / fmax(speed_x, 1e-20f), slow_y = 1.0f / fmax(speed_y, 1e-20f);
@@ -135,7 +137,7 @@ static inline OitBlend oit_trace(OIT_NODES, global const uint4* spans, global co
                 const float4 plane = planes[n];
                 if (plane.x > most_w) continue;
                 if (plane.x < least_w) break;
-                // How far in front of the plane the ray is.
+                // The distances in w from the plane to the ray, at both ends.
                 const float before = w_in - plane.x - plane.y * in_x - plane.z * in_y;
                 const float after = w_out - plane.x - plane.y * out_x - plane.z * out_y;
                 if ((before > 0.0f) == (after > 0.0f)) continue;
@@ -158,8 +160,8 @@ static inline OitBlend oit_trace(OIT_NODES, global const uint4* spans, global co
     return light;
 }
 
-// Writes the mean of the rays of each pixel that is not of the margin. `scale`: pixels by which a
-// ray at the edge of the lens moves for each w.
+// Writes the mean of the rays of each pixel outside the margin. `scale` is the number of pixels by
+// which a ray from the edge of the lens moves per unit of w.
 kernel void oit_gather(OIT_NODES, global const uint4* spans, global const float4* planes,
                        global const uint2* ranges, const float scale, const float focus,
                        const uint most_rays, const int margin, OIT_SCREEN) {
@@ -172,7 +174,7 @@ kernel void oit_gather(OIT_NODES, global const uint4* spans, global const float4
     uint rays = 1;
     if (range.x <= range.y) {
         const float circle = oit_circle(range, scale, focus);
-        // Within half a pixel, all rays see the same.
+        // Within half a pixel, all rays see the same surfaces.
         if (circle > 0.5f)
             rays = (uint)clamp(OIT_RAYS_PER_AREA * M_PI_F * circle * circle, OIT_LEAST_RAYS,
                                (float)most_rays);

@@ -15,14 +15,14 @@ namespace oit {
 /// of a LensFrame.
 class LensGather {
 public:
-    /// `defines` say where nodes are; `uses` are the types and containers of OIT_NODES. Refers to
-    /// the source, which must outlive it.
+    /// `defines` is the text that defines OIT_NODES and so on; `uses` are the types and containers
+    /// of OIT_NODES. Refers to the source, which must outlive it.
     template <class... Uses>
     LensGather(FragmentSource& source, const std::string& defines, const Uses&... uses)
         : LensGather(source, kernel(source, defines, "oit_find_planes", uses...),
                      kernel(source, defines, "oit_gather", uses...)) {}
 
-    /// Enqueues everything; `nodes` are those of OIT_NODES. Does not block.
+    /// Enqueues everything; `nodes` are the arguments for OIT_NODES. Does not block.
     template <class... Nodes>
     void run(const Nodes&... nodes) {
         used_.fill(0);
@@ -36,8 +36,8 @@ public:
                               ranges_.focus(), frame.quality.lens_rays, cl_int{frame.margin});
     }
 
-    /// Waits for the planes. False if they had no room: there is room now, and the frame begins
-    /// again.
+    /// Waits for the number of planes. False if they did not fit: the buffer has grown, and the
+    /// frame must be drawn again.
     [[nodiscard]] bool finish_or_grow();
 
     [[nodiscard]] std::uint64_t device_bytes() const;

@@ -1,4 +1,4 @@
-// Spreads the ranges of tiles along lines of tiles as far as what is there may be seen.
+// Spreads the range of each tile to the tiles in its row, or column, that may see its surfaces.
 kernel void oit_spread_ranges(global const uint2* ranges, global uint2* spread, const int along_y,
                               const float scale, const float focus) {
     const size_t x = get_global_id(0), y = get_global_id(1), across = get_global_size(0);

@@ -10,22 +10,22 @@
 
 namespace oit {
 
-/// The source of a method that gathers the picture through a lens, after what all of them share:
-/// see lens_common.clh.
+/// The source of a method that gathers the picture through a lens, after lens_common.clh and the
+/// defines.
 [[nodiscard]] std::string lens_text(const std::string& defines, std::string_view source);
 
-/// The lens of a frame, and how near and far the surfaces are that each tile of it can see.
+/// The lens of a frame, and the range of depths that each tile can see: see lens_common.clh.
 class LensRanges {
 public:
     explicit LensRanges(const FragmentSource& source);
 
-    /// Forgets what is in the tiles. Does not block.
+    /// Empties all ranges. Does not block.
     void clear() { ranges_.fill(no_range); }
-    /// Spreads what is in the tiles to those that can see it. Does not block.
+    /// Spreads each range to the tiles that can see its surfaces. Does not block.
     void spread();
     [[nodiscard]] const cellist::Buffer<cl_uint2>& ranges() const { return ranges_; }
 
-    /// Pixels by which the view from the edge of the lens moves for each 1 / depth.
+    /// Pixels by which the view from the edge of the lens moves per unit of 1 / depth.
     [[nodiscard]] cl_float scale() const { return scale_; }
     /// 1 / depth in focus.
     [[nodiscard]] cl_float focus() const { return focus_; }
@@ -39,7 +39,7 @@ private:
     cellist::Kernel spread_;
     cellist::Range tiles_;
     cellist::Buffer<cl_uint2> ranges_;
-    cellist::Buffer<cl_uint2> along_x_;  ///< spread in one direction
+    cellist::Buffer<cl_uint2> along_x_;  ///< spread along x only
 };
 
 }  // namespace oit

@@ -1,7 +1,7 @@
-// Peels the nearest layers of each pixel, and keeps them for rays through a lens (see lens.cl).
+// Peels the nearest layers of each pixel and keeps them for rays through a lens (see lens.cl).
 //   current, next  as in peeling.cl
 //   kept           the nodes of the nearest layer of each pixel, then of the second, and so on
-//   counts         layers of each pixel that are kept
+//   counts         the number of layers kept for each pixel
 
 #ifdef OIT_STORES
 // layer_begin: where the nodes of this pass's layer begin.

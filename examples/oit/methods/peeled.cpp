@@ -1,5 +1,5 @@
-// Depth of field from the nearest layers of each pixel, found by depth peeling: the scene is drawn
-// once for each.
+// Depth of field from the nearest layers of each pixel, found by depth peeling. The scene is drawn
+// once for each layer, and once before the first.
 #include <array>
 
 #include "methods/lens_gather.hpp"
@@ -30,7 +30,7 @@ public:
         current_.fill(first_key);
         next_.fill(last_key);
         counts_.fill(0);
-        // The first pass takes nothing, and finds the first layer.
+        // The first pass keeps nothing, and finds the first layer.
         for (cl_uint pass = 0; pass <= layers_; ++pass) {
             const cl_uint first = pass > 0 ? (pass - 1) * pixels_ : 0;
             source_.draw(pass_, current_, next_, nodes_, first);

@@ -1,4 +1,4 @@
-// Adds a picture, times `part`, to the sum.
+// Adds `part` times a picture to the sum.
 kernel void oit_add_picture(global const float4* picture, global float4* sum, uint pixels,
                             float part) {
     const size_t pixel = get_global_id(0);

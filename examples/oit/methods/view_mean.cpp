@@ -7,7 +7,7 @@ namespace oit {
 namespace {
 
 constexpr std::size_t lens_views = 1024;
-constexpr std::size_t samples_across = 64;  // of a pixel
+constexpr std::size_t samples_across = 64;  // a pixel, and as many down
 
 Frame pinhole_frame(const Frame& frame) {
     Frame pinhole = frame;
@@ -17,7 +17,7 @@ Frame pinhole_frame(const Frame& frame) {
     return pinhole;
 }
 
-// A sample of a grid in each pixel.
+// Views through the points of a regular grid in each pixel.
 ViewMean::Views views_of_samples(const Frame& frame) {
     return [&frame](std::size_t i) {
         const auto offset = [](std::size_t n) {

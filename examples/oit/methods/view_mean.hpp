@@ -10,7 +10,7 @@
 
 namespace oit {
 
-/// The mean of pinhole pictures from many views: what a lens does, or the samples of a pixel.
+/// The mean of pinhole pictures from many views: the effect of a lens, or of many samples a pixel.
 class ViewMean {
 public:
     /// The views of the i-th picture, one for each eye.
@@ -20,8 +20,8 @@ public:
     /// Refers to the device and the frame's scene, which must outlive it.
     ViewMean(const cellist::Device& device, const Frame& frame);
 
-    /// Draws `count` pictures at the time of `frame`, and adds them up. Blocks until the last is
-    /// enqueued. `progress` gets the finished part, from 0 to 1.
+    /// Draws `count` pictures at `time`, and averages them. Blocks until the last is enqueued.
+    /// `progress` gets the finished part, from 0 to 1.
     void draw(
         double time, std::size_t count, const Views& views,
         const std::function<void(double)>& progress = [](double) {});
@@ -43,11 +43,12 @@ private:
 /// frame.
 [[nodiscard]] ViewMean::Views views_through_lens(const Frame& frame, std::size_t count);
 
-/// Pictures that the reference of a frame is the mean of; 0 where it is drawn in double precision.
+/// The number of pictures whose mean is the reference of a frame; 0 if it is drawn in double
+/// precision.
 [[nodiscard]] std::size_t reference_views(const Frame& frame);
 
 /// The reference of a frame: draw_reference(), or for Frame::lens and Coverage::exact the mean of
-/// reference_views() pictures by the method `linked`. It has no fragments then. Blocks.
+/// reference_views() pictures by the method `linked`. A mean has no fragments. Blocks.
 [[nodiscard]] Reference reference_of(const cellist::Device& device, const Frame& frame,
                                      const std::function<void(double)>& progress);
 

@@ -1,4 +1,4 @@
-// Pictures through a lens are those of a lens.
+// Pictures through a lens match formulas, and means of pinhole pictures.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -53,7 +53,7 @@ std::vector<cl_float4> draw(const oit::Frame& frame, const std::string& method =
     return image;
 }
 
-// The mean of pinhole pictures: another way from the same rasteriser to the picture.
+// The mean of pinhole pictures: another way to the picture, with the same rasteriser.
 oit::Reference mean_of_views(const oit::Frame& frame) {
     constexpr std::size_t views = 200;
     oit::ViewMean mean(device(), frame);
@@ -78,7 +78,7 @@ double greatest_difference(const std::vector<cl_float4>& a, const std::vector<cl
 
 constexpr double focal_pixels = 40;
 
-// Sees (x, y, z) x / z and y / z times the focal length from the middle.
+// Shows (x, y, z) at x / z and y / z times the focal length from the middle.
 raster::View sheet_view() {
     raster::View view{};
     view.row_x[0] = view.row_y[1] = static_cast<cl_float>(focal_pixels * RASTER_SUBPIXELS);
@@ -93,7 +93,8 @@ raster::View sheet_view() {
     return view;
 }
 
-// Adds an opaque sheet of one colour at a depth, between two columns of pixels from the middle.
+// Adds an opaque sheet of one colour at a depth. It spans the columns `from` to `to`, counted from
+// the middle.
 void add_sheet(oit::Scene& scene, double depth, double from, double to, float colour) {
     support::Mesh mesh;
     const auto at = [&](double pixels) {
@@ -114,7 +115,7 @@ void add_sheet(oit::Scene& scene, double depth, double from, double to, float co
     scene.materials.push_back(material);
 }
 
-// Nothing but the tints gives surfaces their colours.
+// The light leaves surfaces the colours of their tints.
 oit::Scene sheets() {
     oit::Scene scene;
     oit::Lighting& light = scene.lighting;
@@ -131,7 +132,7 @@ double part_of_disc(double right) {
     return 1 - (std::acos(t) - t * std::sqrt(1 - t * t)) / std::numbers::pi;
 }
 
-// Compares the middle row, and another.
+// Compares the middle row, and one near the top.
 void require_columns(const oit::Frame& frame, const std::vector<cl_float4>& image,
                      const std::function<double(double)>& expected) {
     for (const int y : {5, 24})
@@ -150,17 +151,17 @@ oit::Frame sheet_frame(const oit::Scene& scene, const Lens& lens) {
 
 }  // namespace
 
-TEST_CASE("a lens without an aperture, or with all in focus, draws the pinhole picture") {
+TEST_CASE("a lens of radius 0 draws the pinhole picture") {
     const oit::Scene scene = knots(Blend::over);
     oit::Frame frame = lens_frame(scene, {.radius = 0, .focus = 3});
     const std::vector<cl_float4> through_lens = draw(frame);
     frame.lens.reset();
-    // A ray ends where less than 2^-10 of the light passes.
+    // A ray ends when its transmittance is at most 2^-10.
     CHECK(greatest_difference(through_lens, draw(frame)) < 2e-3);
 }
 
 TEST_CASE("an edge out of focus blurs as a disc that a line cuts") {
-    // The sheet in front ends at the middle. The one behind is in focus.
+    // The sheet in front ends at the middle. The sheet behind it is in focus.
     oit::Scene scene = sheets();
     add_sheet(scene, 2, -100, 100, 0.8F);
     add_sheet(scene, 1, -100, 0, 0.2F);
@@ -170,7 +171,7 @@ TEST_CASE("an edge out of focus blurs as a disc that a line cuts") {
                     [&](double x) { return 0.8 - 0.6 * part_of_disc(-x / circle); });
 }
 
-TEST_CASE("an edge in focus stays sharp before a background that is not") {
+TEST_CASE("an edge in focus stays sharp in front of a blurred background") {
     oit::Scene scene = sheets();
     add_sheet(scene, 2, -100, 10, 0.8F);
     add_sheet(scene, 1, -100, 0, 0.2F);
@@ -180,7 +181,7 @@ TEST_CASE("an edge in focus stays sharp before a background that is not") {
                     [&](double x) { return x < 0 ? 0.2 : 0.8 * part_of_disc((10 - x) / circle); });
 }
 
-TEST_CASE("what lies outside of the image blurs into it") {
+TEST_CASE("surfaces outside of the image blur into it") {
     oit::Scene scene = sheets();
     add_sheet(scene, 2, -100, 100, 0.8F);
     add_sheet(scene, 1, -100, -36, 0.2F);
