@@ -79,8 +79,8 @@ typedef struct {
     uint node[OIT_CROSSINGS];
 } OitCrossings;
 
-static inline void oit_blend_crossing(OIT_NODES, const OitPixel* pixel, OitCrossings* found,
-                                      OitBlend* light) {
+static inline void oit_blend_nearest(OIT_NODES, const OitPixel* pixel, OitCrossings* found,
+                                     OitBlend* light) {
     OitFragment fragment = oit_unpack(&pixel->frame, OIT_NODE_AT(found->node[0]));
     fragment.depth = 1.0f / found->w[0];
     oit_blend(light, &fragment, pixel->ray_length);
@@ -99,6 +99,29 @@ static inline void oit_add_crossing(OitCrossings* found, float w, uint node) {
     }
     found->w[at] = w;
     found->node[at] = node;
+}
+
+// Blends the planes that a ray crosses in a pixel. The ray enters at `in` and leaves at `out`. Both
+// are x and y from the pixel's centre, and w.
+static inline void oit_blend_crossed(OIT_NODES, uint4 span, global const float4* planes,
+                                     const OitPixel* pixel, float3 in, float3 out,
+                                     OitBlend* light) {
+    const float most_w = in.z + as_float(span.z), least_w = out.z - as_float(span.z);
+    OitCrossings found;
+    found.count = 0;
+    for (uint n = span.x; n < span.x + span.y; ++n) {
+        const float4 plane = planes[n];
+        if (plane.x > most_w) continue;
+        if (plane.x < least_w) break;
+        // The distances in w from the plane to the ray, at both ends.
+        const float before = in.z - plane.x - plane.y * in.x - plane.z * in.y;
+        const float after = out.z - plane.x - plane.y * out.x - plane.z * out.y;
+        if ((before > 0.0f) == (after > 0.0f)) continue;
+        const float w = in.z + (out.z - in.z) * (before / (before - after));
+        if (found.count == OIT_CROSSINGS) oit_blend_nearest(OIT_NODES_PASS, pixel, &found, light);
+        oit_add_crossing(&found, w, as_uint(plane.w));
+    }
+    while (found.count > 0) oit_blend_nearest(OIT_NODES_PASS, pixel, &found, light);
 }
 
 // The light along a ray from `w_in` to the lesser `w_end`.
@@ -120,33 +143,16 @@ static inline OitBlend oit_trace(OIT_NODES, global const uint4* spans, global co
     if (!(w_in > w_end)) return light;
     int x = clamp(convert_int_sat_rte(speed_x * (w_in - focus)), least_x, most_x);
     int y = clamp(convert_int_sat_rte(speed_y * (w_in - focus)), least_y, most_y);
-    OitCrossings found;
-    found.count = 0;
     for (int steps = width + height; steps > 0; --steps) {
         const float next_x = focus + ((float)x - 0.5f) * slow_x;
         const float next_y = focus + ((float)y - 0.5f) * slow_y;
         const float w_out = fmax(fmax(next_x, next_y), w_end);
-        const uint4 span = spans[pixel->pixel + (ptrdiff_t)(sign_y * y) * width + sign_x * x];
+        const int2 at = (int2)(sign_x * x, sign_y * y);
+        const uint4 span = spans[pixel->pixel + (ptrdiff_t)at.y * width + at.x];
         if (span.y > 0 && w_out < w_in) {
-            const float in_x = (float)sign_x * (speed_x * (w_in - focus) - (float)x);
-            const float in_y = (float)sign_y * (speed_y * (w_in - focus) - (float)y);
-            const float out_x = (float)sign_x * (speed_x * (w_out - focus) - (float)x);
-            const float out_y = (float)sign_y * (speed_y * (w_out - focus) - (float)y);
-            const float most_w = w_in + as_float(span.z), least_w = w_out - as_float(span.z);
-            for (uint n = span.x; n < span.x + span.y; ++n) {
-                const float4 plane = planes[n];
-                if (plane.x > most_w) continue;
-                if (plane.x < least_w) break;
-                // The distances in w from the plane to the ray, at both ends.
-                const float before = w_in - plane.x - plane.y * in_x - plane.z * in_y;
-                const float after = w_out - plane.x - plane.y * out_x - plane.z * out_y;
-                if ((before > 0.0f) == (after > 0.0f)) continue;
-                const float w = w_in + (w_out - w_in) * (before / (before - after));
-                if (found.count == OIT_CROSSINGS)
-                    oit_blend_crossing(OIT_NODES_PASS, pixel, &found, &light);
-                oit_add_crossing(&found, w, as_uint(plane.w));
-            }
-            while (found.count > 0) oit_blend_crossing(OIT_NODES_PASS, pixel, &found, &light);
+            const float3 in = (float3)(speed * (w_in - focus) - convert_float2(at), w_in);
+            const float3 out = (float3)(speed * (w_out - focus) - convert_float2(at), w_out);
+            oit_blend_crossed(OIT_NODES_PASS, span, planes, pixel, in, out, &light);
             if (oit_most(light.transmittance) <= fmax(OIT_LEAST_LIGHT, pixel->frame.epsilon)) break;
         }
         if (w_out <= w_end) break;
