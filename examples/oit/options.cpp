@@ -191,7 +191,8 @@ void add_motion_options(support::CommandLine& line, Options& options) {
 void add_output_options(support::CommandLine& line, Options& options) {
     using Text = const std::string&;
     line.add_flag("--reference", options.reference,
-                  "compare with a rendering in double precision on the CPU");
+                  "compare with a rendering in double precision on the CPU; with --lens or "
+                  "--samples exact, with the mean of many pictures");
     line.add("--out", options.out.path().string(),
              "picture to write: .png, .jpg, .pfm or .exr, - for stdout; all frames as "
              "frame-%04d.png",
