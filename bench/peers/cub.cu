@@ -12,9 +12,9 @@
 //     cub_gather     with indices as values, then the rests gathered by them
 //
 // Host time from the first launch until the device is done. Each run of sort_path reads once more,
-// to time the read alone. The input is in memory, and temporary memory is allocated before. The results of each case are checked once, before it is timed. Cases
-// that do not fit on the device are left out, and named on stderr. The JSON names those that fail,
-// and the exit status is then 1.
+// to time the read alone. The input is in memory, and temporary memory is allocated before. The
+// results of each case are checked once, before it is timed. Cases that do not fit on the device
+// are left out, and named on stderr. The JSON names those that fail, and the exit status is then 1.
 
 #include <algorithm>
 #include <chrono>

@@ -35,7 +35,7 @@ struct FrameOptions {
     std::optional<Lens> lens = {};
     std::optional<support::UpAxis> up = {};  ///< of mesh files; else what each file says, or y
     Quality quality = {};
-    bool all_samples = false;  ///< 1, 2, 4 and 8 samples and exact coverage, to compare them
+    bool all_samples = false;         ///< 1, 2, 4 and 8 samples and exact coverage, to compare them
     std::optional<Blend> blend = {};  ///< of all transparent surfaces; else the scene decides
     std::optional<BlendFunction> blend_function = {};
     std::string device = {};

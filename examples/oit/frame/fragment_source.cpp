@@ -80,8 +80,7 @@ Lighting lighting_of(const Frame& frame) {
     const auto inner = static_cast<cl_float>(frame.height() - 2 * frame.margin);
     const cl_float beyond = static_cast<cl_float>(frame.margin) / inner;
     for (int i = 0; i < 3; ++i) {
-        const cl_float more =
-            beyond * (lighting.background_bottom[i] - lighting.background_top[i]);
+        const cl_float more = beyond * (lighting.background_bottom[i] - lighting.background_top[i]);
         lighting.background_top[i] -= more;
         lighting.background_bottom[i] += more;
     }

@@ -14,8 +14,11 @@ namespace {
 // more, sorting the lists is faster.
 constexpr std::uint32_t nearest_max = 16;
 
-// The longest lists that the reader sorts itself; longer ones are sorted before.
-constexpr std::uint32_t sorted_in_reader_max = 127;
+// The longest lists that the reader sorts itself; longer ones are sorted before. On GPUs, a sort of
+// its own waits for the host in between. On processors, it is faster from some 64 nodes on.
+std::uint32_t sorted_in_reader_max(const cellist::DeviceInfo& device) {
+    return (device.type & CL_DEVICE_TYPE_GPU) != 0 ? 127 : 63;
+}
 
 std::string layers_define(const Quality& quality) {
     return quality.layers ? define("OIT_LAYERS", *quality.layers) : "";
@@ -146,7 +149,7 @@ private:
             pool_ = Pool::growing;
             return;
         }
-        if (may_sort_in_reader_ && longest <= sorted_in_reader_max)
+        if (may_sort_in_reader_ && longest <= sorted_in_reader_max(source_.device().info()))
             unsorted_reader_.emplace(kernel_of(blending_reader(
                 source_.frame().quality, false, define("OIT_SORTED", std::bit_ceil(longest + 1)))));
         else

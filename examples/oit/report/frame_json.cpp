@@ -10,9 +10,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-const char* name_of(Coverage coverage) {
-    return coverage == Coverage::exact ? "exact" : "samples";
-}
+const char* name_of(Coverage coverage) { return coverage == Coverage::exact ? "exact" : "samples"; }
 
 template <class T>
 ordered_json or_null(const std::optional<T>& value) {
@@ -52,11 +50,16 @@ ordered_json json_of(const FrameOptions& options, std::string_view program) {
 
 ordered_json json_of(const Setting& setting) {
     const Quality& quality = setting.quality;
-    return {{"options", text(setting)},          {"method", setting.method->name},
-            {"exact", setting.method->exact},    {"size", or_null(quality.size)},
-            {"layers", or_null(quality.layers)}, {"epsilon", as_read(quality.epsilon)},
-            {"format", name_of(quality.format)}, {"samples", quality.samples},
-            {"coverage", name_of(quality.coverage)}, {"lens_rays", quality.lens_rays}};
+    return {{"options", text(setting)},
+            {"method", setting.method->name},
+            {"exact", setting.method->exact},
+            {"size", or_null(quality.size)},
+            {"layers", or_null(quality.layers)},
+            {"epsilon", as_read(quality.epsilon)},
+            {"format", name_of(quality.format)},
+            {"samples", quality.samples},
+            {"coverage", name_of(quality.coverage)},
+            {"lens_rays", quality.lens_rays}};
 }
 
 ordered_json times_json(const Measurement& m) {

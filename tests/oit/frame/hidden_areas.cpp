@@ -152,6 +152,8 @@ TEST_CASE("where opaque triangles leave many pieces of a pixel, points decide") 
         const auto [off, largest, mean] = errors_of_layers(layers);
         INFO(off << " of " << picture_side * picture_side << " pixels off, by up to " << largest
                  << ", in the mean by " << mean);
+        // The area below 32 random points has a deviation of up to 0.5 / sqrt(32) = 0.088, and a
+        // mean error of 0.07. The points of a pixel are spread better than that.
         CHECK(largest < 0.3);
         CHECK(mean < 0.05);
     }
