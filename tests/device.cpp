@@ -82,6 +82,27 @@ TEST_CASE("containers, kernels and buffers outlive the Device object") {
     REQUIRE(cells.download() == inserts.cells);
 }
 
+TEST_CASE("the last object of a device waits for the work in its queue") {
+    // Long enough that nothing but waiting sees the end of it.
+    constexpr const char* source = R"(
+kernel void advance(global uint* value, uint steps)
+{
+    uint x = value[0];
+    for (uint i = 0; i < steps; ++i) x = x * 1664525u + 1013904223u;
+    value[0] = x;
+}
+)";
+    cl::Event end;
+    {
+        const Device own = Device::choose();
+        const Buffer<cl_uint> value(own, 1);
+        Kernel advance(own, source, "advance");
+        for (int i = 0; i < 20; ++i) advance.run(1, value, cl_uint{5'000'000});
+        end = own.enqueue_marker();
+    }
+    REQUIRE(end.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() == CL_COMPLETE);
+}
+
 TEST_CASE("moved devices, containers, kernels and buffers go on working") {
     static_assert(!std::is_copy_constructible_v<Device> && !std::is_copy_assignable_v<Device>);
     static_assert(!std::is_copy_constructible_v<Lists<Item>> &&

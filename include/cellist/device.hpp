@@ -37,9 +37,10 @@ struct DeviceInfo {
 };
 
 /// An OpenCL device with a context, a queue and a cache of built programs. Objects that are made
-/// from a Device share these, and stay valid after the Device object is destroyed. Movable, not
-/// copyable. Using a moved-from Device throws Error. Every function that calls OpenCL throws
-/// OpenClError if the call fails.
+/// from a Device share these, and stay valid after the Device object is destroyed. The destructor
+/// of the last of them blocks until all work in the queue has run, unless the queue is the
+/// caller's. Movable, not copyable. Using a moved-from Device throws Error. Every function that
+/// calls OpenCL throws OpenClError if the call fails.
 ///
 /// Several threads may use one Device and the objects made from it, if each object is used by one
 /// thread at a time.

@@ -156,7 +156,7 @@ Device::Device(const cl::Device& device)
                  cl::Context context(device);
                  cl::CommandQueue queue(context, device);
                  return std::make_shared<detail::DeviceState>(std::move(context), std::move(queue),
-                                                              device, false);
+                                                              device, false, true);
              })) {}
 
 Device::Device(cl::Context context, cl::CommandQueue queue)
@@ -168,7 +168,8 @@ Device::Device(cl::Context context, cl::CommandQueue queue)
                       CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0;
                  cl::Device device(queue_info<cl_device_id>(queue, CL_QUEUE_DEVICE), true);
                  return std::make_shared<detail::DeviceState>(std::move(context), std::move(queue),
-                                                              std::move(device), out_of_order);
+                                                              std::move(device), out_of_order,
+                                                              false);
              })) {}
 
 Device::Device(Device&&) noexcept = default;
@@ -201,14 +202,20 @@ cl::Event Device::enqueue_marker() const { return state_->enqueue_marker(); }
 namespace detail {
 
 DeviceState::DeviceState(cl::Context its_context, cl::CommandQueue its_queue, cl::Device its_device,
-                         bool is_out_of_order)
+                         bool is_out_of_order, bool owns_its_queue)
     : context(std::move(its_context)),
       queue(std::move(its_queue)),
       device(std::move(its_device)),
       info(cellist::describe(device)),
       out_of_order(is_out_of_order),
+      owns_queue(owns_its_queue),
       max_constant_bytes(device.getInfo<CL_DEVICE_MAX_CONSTANT_BUFFER_SIZE>()),
       staging(std::make_shared<PinnedStaging>(context, queue)) {}
+
+// Not by the bindings, which throw. A failure is of no use to anybody any more.
+DeviceState::~DeviceState() {
+    if (owns_queue) clFinish(queue());
+}
 
 const cl::CommandQueue& DeviceState::ordered_queue() const {
     if (out_of_order) opencl([&] { queue.enqueueBarrierWithWaitList(); });

@@ -20,13 +20,18 @@ namespace cellist::detail {
 struct DeviceState {
     /// Throws cl::Error.
     DeviceState(cl::Context its_context, cl::CommandQueue its_queue, cl::Device its_device,
-                bool is_out_of_order);
+                bool is_out_of_order, bool owns_its_queue);
+    DeviceState(const DeviceState&) = delete;
+    DeviceState& operator=(const DeviceState&) = delete;
+    /// Blocks until the work in a queue of its own has run: PoCL crashes if the process ends before.
+    ~DeviceState();
 
     cl::Context context;
     cl::CommandQueue queue;
     cl::Device device;
     DeviceInfo info;
     bool out_of_order;                 ///< the queue
+    bool owns_queue;                   ///< nobody else has made it
     std::uint64_t max_constant_bytes;  ///< of a buffer in constant memory
     std::shared_ptr<PinnedStaging> staging;
 
