@@ -3,10 +3,11 @@
 //   offsets   cells + 1          where each list goes, counted from the first list of all
 //   values    offsets[end] - offsets[begin]   out
 //
-// One work-item for each cell in begin ... end - 1; the range is padded to whole work-groups. The
-// host defines CELLIST_VALUE, which declares a variable for a value, and CELLIST_MEMBER, which
-// selects the value when it follows a record. It defines CELLIST_GATHER_GROUP, the work-items of a
-// group, where these collect values in local memory to write whole lines: on GPUs.
+// One work-item for each cell in begin ... end - 1, or one for CELLIST_READER_CELLS of them
+// (reader.cl); the range is padded to whole work-groups. The host defines CELLIST_VALUE, which
+// declares a variable for a value, and CELLIST_MEMBER, which selects the value when it follows a
+// record. It defines CELLIST_GATHER_GROUP, the work-items of a group, where these collect values in
+// local memory to write whole lines: on GPUs.
 #include <cellist/lists.clh>
 
 // A struct, because arrays are values too, and C assigns no arrays.
@@ -49,6 +50,25 @@ kernel __attribute__((reqd_work_group_size(CELLIST_GATHER_GROUP, 1, 1))) void ce
             values[first + i] = collected[CELLIST_GATHER_AT(i)];
         barrier(CLK_LOCAL_MEM_FENCE);
         first += count;
+    }
+}
+#elif defined(CELLIST_READER_CELLS)
+kernel void cellist_gather(CELLIST_LISTS(CELLIST_RECORD, lists), uint begin, uint end,
+                           global const uint* offsets, global cellist_gathered* values) {
+    const uint start = offsets[begin];
+    cellist_reader reader = cellist_reader_of(begin, end);
+    while (cellist_refill(&reader, lists_heads)) {
+        for (uint i = 0; i < reader.open; ++i) {
+            const uint node = reader.node[i];
+            const uint at = offsets[reader.cell[i]] + reader.read[i];
+            if (node < cellist_view_of(lists).pool_nodes && at < offsets[reader.cell[i] + 1]) {
+                values[at - start] = CELLIST_VALUE_OF(node);
+                reader.node[i] = lists_nodes[node].next;
+                ++reader.read[i];
+            } else {
+                cellist_close(&reader, i--);
+            }
+        }
     }
 }
 #else

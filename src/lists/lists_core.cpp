@@ -52,13 +52,32 @@ bool gathers_together(const RecordKernels& kernels) {
            kernels.record().size <= gathered_bytes_most;
 }
 
+/// Cells of a work-item that follows the links of several lists together, on processors.
+constexpr std::size_t reader_cells = 128;
+
+bool reads_several_lists(const RecordKernels& kernels, unsigned mode) {
+    return (kernels.owner()->info.type & CL_DEVICE_TYPE_CPU) != 0 && mode == CELLIST_LINKED;
+}
+
+/// Of a kernel that reads the lists of so many cells.
+Range reading_range(const RecordKernels& kernels, unsigned mode, std::uint64_t cells) {
+    return reads_several_lists(kernels, mode) ? Range::padded(cells / reader_cells + 1, 1)
+                                              : Range::padded(cells);
+}
+
 /// A kernel that reads lists. Lengths and copies are one program: who copies lists needs both, and
 /// a second program takes longer to compile than a second kernel.
 Kernel& reading_kernel(RecordKernels& kernels, const char* name, unsigned mode,
                        const std::string& declaration, const std::string& member) {
     return kernels.get(
-        {{"lengths.cl", kernels::lengths_cl}, {"gather.cl", kernels::gather_cl}}, name, mode,
+        {{"reader.cl", kernels::reader_cl},
+         {"lengths.cl", kernels::lengths_cl},
+         {"gather.cl", kernels::gather_cl}},
+        name, mode,
         "#define CELLIST_VALUE " + declaration + "\n#define CELLIST_MEMBER " + member + "\n" +
+            (reads_several_lists(kernels, mode)
+                 ? "#define CELLIST_READER_CELLS " + std::to_string(reader_cells) + "u\n"
+                 : "") +
             (gathers_together(kernels)
                  ? "#define CELLIST_GATHER_GROUP " + std::to_string(gather_group) + "u\n"
                  : ""));
@@ -172,8 +191,6 @@ Storage ListsCore::storage_in_use() const { return storage_->in_use().kind(); }
 std::string ListsCore::storage_reason() const { return storage_->reason(); }
 cl::Event ListsCore::enqueue_marker() const { return device_->enqueue_marker(); }
 
-Range ListsCore::cell_range() const { return Range::padded(shape_.cells()); }
-
 void Arguments::add_lists(const ListsCore& lists) {
     if (!lists.is_building()) closed_.push_back({lists.weak_from_this(), arguments_.size()});
     lists.add_to(*this);
@@ -208,7 +225,7 @@ Memory ListsCore::device_lengths(std::uint64_t words) const {
     add_to(arguments);
     arguments.add(lengths.cl());
     reading_kernel(*kernels_, "cellist_lengths", mode(), record_declaration(*kernels_), "")
-        .enqueue(cell_range(), arguments);
+        .enqueue(reading_range(*kernels_, mode(), shape_.cells()), arguments);
     return lengths;
 }
 
@@ -252,7 +269,7 @@ void ListsCore::gather(std::uint64_t begin, std::uint64_t end, const Memory& off
     arguments.add(values);
     reading_kernel(*kernels_, "cellist_gather", mode(), declaration, member)
         .enqueue(gathers_together(*kernels_) ? Range::padded(end - begin, gather_group)
-                                             : Range::padded(end - begin),
+                                             : reading_range(*kernels_, mode(), end - begin),
                  arguments);
 }
 

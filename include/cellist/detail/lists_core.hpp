@@ -141,7 +141,6 @@ private:
     /// Throws Error if no Lists object refers to the built container any more, because the function
     /// that inserts has replaced it.
     static void require_owner(const std::shared_ptr<ListsCore>& self);
-    [[nodiscard]] Range cell_range() const;
     [[nodiscard]] Memory device_lengths(std::uint64_t words) const;
     [[nodiscard]] std::uint64_t most_records() const;
     [[nodiscard]] Memory device_offsets() const;
