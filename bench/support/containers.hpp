@@ -31,15 +31,19 @@ cellist::Source source_of(std::string_view kernels, const std::string& file_name
 /// Whether the kernel computes what it inserts, or reads it from arrays.
 enum class Input { generated, stored };
 
+/// Whether containers start with what the caches hold of the run before.
+enum class Caches { cold, warm };
+
 /// Containers of one workload, used in turn. They are filled and checked once. If a list is too
 /// long for one work-item, fewer records of the same workload are checked instead.
 template <class Record>
 class Containers {
 public:
-    /// `interleaved` of these are used in turn, and together fill the caches. Throws
-    /// std::runtime_error if the lists are wrong.
+    /// With cold caches, `interleaved` of these are used in turn, and together fill the caches. With
+    /// warm ones there is one container. Throws std::runtime_error if the lists are wrong.
     Containers(const Suite& suite, const Workload& workload, const Configuration& configuration,
-               Input input = Input::generated, std::size_t interleaved = 1)
+               Input input = Input::generated, Caches caches = Caches::cold,
+               std::size_t interleaved = 1)
         : workload_(workload), options_(options_for(workload, configuration)) {
         const cellist::Device& device = suite.device();
         lists_.emplace_back(device, cellist::Shape{workload.cells()}, options_);
@@ -57,7 +61,8 @@ public:
         else
             Containers(suite, checked, configuration, input);
 
-        while (lists_.size() < suite.copies(interleaved * lists_.front().pool_bytes())) {
+        while (caches == Caches::cold &&
+               lists_.size() < suite.copies(interleaved * lists_.front().pool_bytes())) {
             lists_.emplace_back(device, cellist::Shape{workload.cells()}, options_);
             settle(lists_.back());
         }
