@@ -20,10 +20,14 @@ file(MAKE_DIRECTORY "${work_dir}")
 if(way STREQUAL "find_package")
     set(first_prefix "${work_dir}/first")
     set(prefix "${work_dir}/moved")
-    run("${CMAKE_COMMAND}" --install "${build_dir}" --config "${config}" --prefix "${first_prefix}")
+    # The examples are left out.
+    foreach(component development command)
+        run("${CMAKE_COMMAND}" --install "${build_dir}" --config "${config}"
+            --component "${component}" --prefix "${first_prefix}")
+    endforeach()
     file(RENAME "${first_prefix}" "${prefix}")
 
-    file(GLOB_RECURSE package_files "${prefix}/*.cmake")
+    file(GLOB_RECURSE package_files "${prefix}/*.cmake" "${prefix}/*.pc")
     if(NOT package_files)
         message(FATAL_ERROR "no CMake package was installed")
     endif()
@@ -72,6 +76,20 @@ if(way STREQUAL "find_package")
                 message(FATAL_ERROR "the plug-in exports `${symbol}`")
             endif()
         endforeach()
+    endif()
+
+    find_program(pkg_config NAMES pkg-config pkgconf)
+    file(GLOB_RECURSE pc_file "${prefix}/*/cellist.pc")
+    if(pkg_config)
+        cmake_path(GET pc_file PARENT_PATH pc_dir)
+        set(ENV{PKG_CONFIG_PATH} "${pc_dir}")
+        execute_process(COMMAND "${pkg_config}" --cflags --libs cellist
+            OUTPUT_VARIABLE flags OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+        separate_arguments(flags UNIX_COMMAND "${flags}")
+        separate_arguments(cxx_flags UNIX_COMMAND "${cxx_flags}")
+        run("${cxx_compiler}" ${cxx_flags} -std=c++20 "${CMAKE_CURRENT_LIST_DIR}/main.cpp"
+            -o "${work_dir}/by_pkg_config" ${flags})
+        run("${work_dir}/by_pkg_config")
     endif()
 
     find_program(command cellist NO_DEFAULT_PATH NO_CACHE PATHS "${prefix}/bin")
