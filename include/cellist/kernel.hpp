@@ -27,7 +27,7 @@ struct Source {
 /// Kernel throws Error.
 ///
 /// A device caches the last 128 programs, by source, types and options. It does not cache a source
-/// that includes the user's own files, by #include or by the option "-include". Each Kernel
+/// that includes the user's own files, by a directive or by the option "-include". Each Kernel
 /// compiles such a source again from the current files. `#include <cellist/lists.clh>` and
 /// `<cellist/glm.clh>` need no path and do not prevent caching.
 class Kernel {
