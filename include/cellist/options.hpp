@@ -113,6 +113,10 @@ struct ListsOptions {
     std::uint64_t budget_bytes = std::numeric_limits<std::uint64_t>::max();
     /// For Storage::automatic: how often kernels read all lists after each build.
     std::uint32_t expected_reads = 1;
+    /// The axes that wrap around: on a periodic axis, the cells at both ends are neighbours, and a
+    /// coordinate outside of the shape means the cell at its remainder. On the other axes, nothing
+    /// lies beyond the shape. E.g. `.periodic = {true, true, false}`.
+    std::array<bool, 4> periodic = {};
 };
 
 }  // namespace cellist

@@ -83,6 +83,7 @@ typedef struct cellist_view {
     CELLIST_UINT threshold_words;  // words of the key that have thresholds
     CELLIST_UINT thread_slots;     // 0, or a power of two from 8 on
     CELLIST_UINT partition_bits;   // cells of a partition in mode PARTITIONED: 2^partition_bits
+    CELLIST_UINT periodic_axes;    // bit i: axis i wraps around
 } cellist_view;
 
 // The counters of one shard, alone in its cache line. The struct after the last shard holds the

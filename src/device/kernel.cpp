@@ -47,6 +47,7 @@ const ProgramText& library_text() {
         CELLIST_STORAGES(CELLIST_ADD_STORAGE, , )
 #undef CELLIST_ADD_STORAGE
         text.add(kernels::lists_clh, "cellist/lists.clh");
+        text.add(kernels::around_clh, "cellist/around.clh");
         return text;
     }();
     return library;

@@ -326,7 +326,10 @@ void ListsCore::release_kept_buffers() {
 /// dropped.
 std::vector<cl_uint> ListsCore::count(const std::function<void()>& insert, BuildReport& report) {
     auto counting = std::make_unique<CountedStorage>(
-        *kernels_, shape_, ListsOptions{.overflow = Overflow::stop, .capacity_nodes = 0});
+        *kernels_, shape_,
+        ListsOptions{.overflow = Overflow::stop,
+                     .capacity_nodes = 0,
+                     .periodic = storage_->in_use().options().periodic});
     CountedStorage& counter = *counting;
     const ScopedStorage scoped(*storage_, std::move(counting));
     enter({.phase = Phase::building});

@@ -17,6 +17,8 @@ ListStorage::ListStorage(RecordKernels& kernels, const Shape& shape, const Lists
         view_.extent[i] = static_cast<cl_uint>(shape.extent(i));
     view_.cells = static_cast<cl_uint>(shape.cells());
     view_.mode = mode;
+    for (std::size_t i = 0; i < options.periodic.size(); ++i)
+        if (options.periodic[i]) view_.periodic_axes |= 1U << i;
 }
 
 void ListStorage::require_given(bool given, const char* size) const {

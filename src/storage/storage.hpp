@@ -99,6 +99,7 @@ public:
     [[nodiscard]] std::uint64_t bytes() const { return pool_.bytes(); }
     [[nodiscard]] std::uint64_t cells() const { return shape_.cells(); }
     [[nodiscard]] Storage kind() const { return options_.storage; }
+    [[nodiscard]] const ListsOptions& options() const { return options_; }
     /// The mode in which the lists are read.
     [[nodiscard]] cl_uint mode() const { return view_.mode; }
     /// Records in the lists.
