@@ -1,7 +1,6 @@
 // What the kernels that sort have in common: how nodes lie in memory, and ranking a few of them.
 //
-// The order is that of cellist_sort_key(record), then that of the record's scalars. The host
-// defines
+// The order is that of cellist_sort_key, then that of the record's scalars. The host defines
 //
 //   CELLIST_SORT_KEY_BITS      32 or 64, what the key needs
 //   CELLIST_SORT_KEEPS_KEYS    1 if a merge reads stored keys, 0 if it computes them again
@@ -18,10 +17,12 @@
 //   CELLIST_SORT_PIECE         the type of the pieces in which large nodes move; not defined if
 //                              nodes move whole
 //
-// and after this file cellist_sort_key(pointer to a record), which maps the key to an unsigned
-// integer of the same order. If the user's expression is not an order, its value may differ from
-// call to call. No record is lost then: the code that moves records compares each pair once, or
-// reads stored keys.
+//   cellist_values             a struct of the values that the expression of the key uses
+//   cellist_sort_key(pointer to a record, values)
+//                              maps the key to an unsigned integer of the same order
+//
+// If the user's expression is not an order, its value may differ from call to call. No record is
+// lost then: the code that moves records compares each pair once, or reads stored keys.
 //
 // The rank of a record is the number of records that come before it. Ranking compares all with all:
 // for up to some hundred records this is faster than sorts with fewer comparisons, because it does

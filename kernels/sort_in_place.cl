@@ -11,12 +11,12 @@
 
 // Merges two sorted lists of up to `most` nodes together.
 static inline uint cellist_sort_merge_lists(CELLIST_LISTS(CELLIST_RECORD, lists), uint a, uint b,
-                                            ulong most) {
+                                            ulong most, const cellist_values values) {
     const cellist_view lists_view = cellist_view_of(lists);
     uint first = CELLIST_NONE;
     uint last = CELLIST_NONE;
-    cellist_sort_bits x = cellist_sort_key(&cellist_get(lists, a));
-    cellist_sort_bits y = cellist_sort_key(&cellist_get(lists, b));
+    cellist_sort_bits x = cellist_sort_key(&cellist_get(lists, a), values);
+    cellist_sort_bits y = cellist_sort_key(&cellist_get(lists, b), values);
     for (ulong step = 0; step < most; ++step) {
         const int b_first =
             cellist_sort_before(&cellist_get(lists, b), y, &cellist_get(lists, a), x);
@@ -30,16 +30,17 @@ static inline uint cellist_sort_merge_lists(CELLIST_LISTS(CELLIST_RECORD, lists)
         const uint next = lists_nodes[least].next;
         if (next >= lists_view.pool_nodes) break;
         if (b_first)
-            b = next, y = cellist_sort_key(&cellist_get(lists, b));
+            b = next, y = cellist_sort_key(&cellist_get(lists, b), values);
         else
-            a = next, x = cellist_sort_key(&cellist_get(lists, a));
+            a = next, x = cellist_sort_key(&cellist_get(lists, a), values);
     }
     // One list has ended with `last`; the rest of the other follows.
     lists_nodes[last].next = last == b ? a : b;
     return first;
 }
 
-static inline void cellist_sort_cell(CELLIST_LISTS(CELLIST_RECORD, lists), uint cell) {
+static inline void cellist_sort_cell(CELLIST_LISTS(CELLIST_RECORD, lists), uint cell,
+                                     const cellist_values values) {
     const cellist_view lists_view = cellist_view_of(lists);
     uint pending[32];
     uint used = 0;
@@ -49,8 +50,8 @@ static inline void cellist_sort_cell(CELLIST_LISTS(CELLIST_RECORD, lists), uint 
         lists_nodes[node].next = CELLIST_NONE;
         uint level = 0;
         for (; level < used && pending[level] != CELLIST_NONE; ++level) {
-            node =
-                cellist_sort_merge_lists(CELLIST_PASS(lists), pending[level], node, 2ul << level);
+            node = cellist_sort_merge_lists(CELLIST_PASS(lists), pending[level], node, 2ul << level,
+                                            values);
             pending[level] = CELLIST_NONE;
         }
         if (level == used) ++used;
@@ -64,7 +65,7 @@ static inline void cellist_sort_cell(CELLIST_LISTS(CELLIST_RECORD, lists), uint 
         sorted = sorted == CELLIST_NONE
                      ? pending[level]
                      : cellist_sort_merge_lists(CELLIST_PASS(lists), pending[level], sorted,
-                                                2ul << level);
+                                                2ul << level, values);
     }
     lists_heads[cell] = sorted;
 }
@@ -72,8 +73,9 @@ static inline void cellist_sort_cell(CELLIST_LISTS(CELLIST_RECORD, lists), uint 
 #else
 
 static inline int cellist_sort_is_first(global const struct CELLIST_RECORD* a,
-                                        global const struct CELLIST_RECORD* b) {
-    return cellist_sort_before(a, cellist_sort_key(a), b, cellist_sort_key(b));
+                                        global const struct CELLIST_RECORD* b,
+                                        const cellist_values values) {
+    return cellist_sort_before(a, cellist_sort_key(a, values), b, cellist_sort_key(b, values));
 }
 
 static inline void cellist_sort_swap(global struct CELLIST_RECORD* a,
@@ -88,34 +90,37 @@ static inline void cellist_sort_swap(global struct CELLIST_RECORD* a,
 }
 
 // Lets the record at `at` sink in the heap of `length` records: the last comes first.
-static inline void cellist_sort_sift(global struct CELLIST_RECORD* records, uint at, uint length) {
+static inline void cellist_sort_sift(global struct CELLIST_RECORD* records, uint at, uint length,
+                                     const cellist_values values) {
     while (at < length / 2) {
         uint child = 2 * at + 1;
-        if (child + 1 < length && cellist_sort_is_first(&records[child], &records[child + 1]))
+        if (child + 1 < length &&
+            cellist_sort_is_first(&records[child], &records[child + 1], values))
             ++child;
-        if (!cellist_sort_is_first(&records[at], &records[child])) break;
+        if (!cellist_sort_is_first(&records[at], &records[child], values)) break;
         cellist_sort_swap(&records[at], &records[child]);
         at = child;
     }
 }
 
-static inline void cellist_sort_cell(CELLIST_LISTS(CELLIST_RECORD, lists), uint cell) {
+static inline void cellist_sort_cell(CELLIST_LISTS(CELLIST_RECORD, lists), uint cell,
+                                     const cellist_values values) {
     const cellist_view lists_view = cellist_view_of(lists);
     const uint length = cellist_sort_length(lists_heads, lists_view, cell);
     if (length < 2) return;
     global struct CELLIST_RECORD* records =
         &cellist_get(lists, cellist_begin(lists_heads, lists_view, cell));
-    for (uint i = length / 2; i > 0; --i) cellist_sort_sift(records, i - 1, length);
+    for (uint i = length / 2; i > 0; --i) cellist_sort_sift(records, i - 1, length, values);
     for (uint end = length - 1; end > 0; --end) {
         cellist_sort_swap(&records[0], &records[end]);
-        cellist_sort_sift(records, 0, end);
+        cellist_sort_sift(records, 0, end, values);
     }
 }
 
 #endif
 
 kernel void cellist_sort_in_place(CELLIST_LISTS(CELLIST_RECORD, lists), global const uint* cells,
-                                  uint listed, uint count) {
+                                  uint listed, uint count, const cellist_values values) {
     const uint i = get_global_id(0);
-    if (i < count) cellist_sort_cell(CELLIST_PASS(lists), listed ? cells[i] : i);
+    if (i < count) cellist_sort_cell(CELLIST_PASS(lists), listed ? cells[i] : i, values);
 }

@@ -24,7 +24,8 @@ static inline uint cellist_sort_class(uint length) {
 CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
                                        global const uint* cells, uint listed, uint count,
                                        global uint* longer, uint longer_end, uint stage,
-                                       volatile global cellist_sort_state* state
+                                       volatile global cellist_sort_state* state,
+                                       const cellist_values values
 #if CELLIST_MODES == CELLIST_LINKED
                                        ,
                                        global uint* heads, global cellist_sort_node* nodes
@@ -107,7 +108,8 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
                 heads[CELLIST_SORT_CELL(list)] = length > 0 ? base + firsts[list] : CELLIST_NONE;
         }
         for (uint i = member; i < length; i += CELLIST_SORT_TEAM)
-            keys[row + i] = cellist_sort_key(&cellist_sort_record(own_nodes[index[row + i]]));
+            keys[row + i] =
+                cellist_sort_key(&cellist_sort_record(own_nodes[index[row + i]]), values);
 #else
         uint first = 0;
         if (list < own) {
@@ -123,7 +125,7 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
             if (member == 0 && length > 0) cellist_sort_add(&total, length);
         }
         for (uint i = member; i < length; i += CELLIST_SORT_TEAM)
-            keys[row + i] = cellist_sort_key(&cellist_sort_record(own_nodes[first + i]));
+            keys[row + i] = cellist_sort_key(&cellist_sort_record(own_nodes[first + i]), values);
 #endif
         cellist_sort_barrier();
         uint ranks[CELLIST_SORT_RUNS * CELLIST_SORT_WIDTH];

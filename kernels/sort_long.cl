@@ -204,14 +204,16 @@ kernel void cellist_sort_gather(CELLIST_LISTS(CELLIST_RECORD, lists), global con
 #if CELLIST_SORT_KEEPS_KEYS
 #define cellist_sort_key_of(nodes, keys, i) ((keys)[i])
 #else
-#define cellist_sort_key_of(nodes, keys, i) cellist_sort_key(&cellist_sort_record((nodes)[i]))
+#define cellist_sort_key_of(nodes, keys, i)                                                        \
+    cellist_sort_key(&cellist_sort_record((nodes)[i]), values)
 #endif
 
 // Sorts each chunk; CELLIST_SORT_ITEMS work-items a chunk.
 CELLIST_SORT_KERNEL cellist_sort_chunks(global const cellist_sort_long_list* long_lists,
                                         global const uint* chunk_owners, uint chunks,
                                         global cellist_sort_node* nodes,
-                                        global cellist_sort_bits* kept_keys) {
+                                        global cellist_sort_bits* kept_keys,
+                                        const cellist_values values) {
     CELLIST_SORT_SHARED cellist_sort_bits keys[CELLIST_SORT_CHUNK_SIZE];
     CELLIST_SORT_SHARED uchar order[CELLIST_SORT_CHUNK_SIZE];
     CELLIST_SORT_SHARED uint sum;
@@ -229,7 +231,7 @@ CELLIST_SORT_KERNEL cellist_sort_chunks(global const cellist_sort_long_list* lon
     }
     if (item == 0) sum = 0;
     for (uint i = item; i < length; i += CELLIST_SORT_ITEMS)
-        keys[i] = cellist_sort_key(&cellist_sort_record(nodes[first + i]));
+        keys[i] = cellist_sort_key(&cellist_sort_record(nodes[first + i]), values);
     cellist_sort_barrier();
     uint ranks[CELLIST_SORT_RUNS * CELLIST_SORT_WIDTH];
     cellist_sort_add(&sum, cellist_sort_rank(keys, length, item, ranks));
@@ -250,7 +252,7 @@ CELLIST_SORT_KERNEL cellist_sort_chunks(global const cellist_sort_long_list* lon
 // and middle ... end - 1.
 static inline uint cellist_sort_split(global const cellist_sort_node* nodes,
                                       global const cellist_sort_bits* keys, uint first, uint middle,
-                                      uint end, uint taken) {
+                                      uint end, uint taken, const cellist_values values) {
     uint least = taken > end - middle ? taken - (end - middle) : 0;
     uint most = min(taken, middle - first);
     while (least < most) {
@@ -274,7 +276,8 @@ kernel void cellist_sort_merge_runs(global const cellist_sort_long_list* long_li
                                     global const cellist_sort_node* from,
                                     global cellist_sort_node* to, uint run,
                                     global const cellist_sort_bits* keys_from,
-                                    global cellist_sort_bits* keys_to) {
+                                    global cellist_sort_bits* keys_to,
+                                    const cellist_values values) {
     const uint per_chunk = max(CELLIST_SORT_CHUNK_SIZE / CELLIST_SORT_MERGE_ITEMS, 1);
     const ulong item = get_global_id(0);
     if (item >= (ulong)chunks * per_chunk) return;
@@ -292,7 +295,8 @@ kernel void cellist_sort_merge_runs(global const cellist_sort_long_list* long_li
         const uint first = (uint)(at - at % (2 * (ulong)run));
         const uint a_end = first + min(list.length - first, run);
         const uint b_end = a_end + min(list.length - a_end, run);
-        uint a = first + cellist_sort_split(from, keys_from, first, a_end, b_end, at - first);
+        uint a =
+            first + cellist_sort_split(from, keys_from, first, a_end, b_end, at - first, values);
         uint b = a_end + at - a;
         const uint stop = min(end, b_end);
         // As many steps at a time as neither run ends in. They compute instead of branching: no

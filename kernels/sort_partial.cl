@@ -19,8 +19,9 @@ typedef struct cellist_sort_top {
 
 // Looks at the next node of a list, the `number`-th.
 static inline void cellist_sort_take(CELLIST_LISTS(CELLIST_RECORD, lists), cellist_sort_top* top,
-                                     uint top_k, uint number, uint node) {
-    const cellist_sort_bits key = cellist_sort_key(&cellist_get(lists, node));
+                                     uint top_k, uint number, uint node,
+                                     const cellist_values values) {
+    const cellist_sort_bits key = cellist_sort_key(&cellist_get(lists, node), values);
     if (number < top_k) top->targets[number] = node;
     uint at = min(number, top_k);
     for (; at > 0; --at) {
@@ -60,7 +61,8 @@ static inline void cellist_sort_move(CELLIST_LISTS(CELLIST_RECORD, lists),
 }
 
 kernel void cellist_sort_partial(CELLIST_LISTS(CELLIST_RECORD, lists), uint top_k, uint length_max,
-                                 volatile global cellist_sort_state* state) {
+                                 volatile global cellist_sort_state* state,
+                                 const cellist_values values) {
     const cellist_view lists_view = cellist_view_of(lists);
     const ulong begin = (ulong)get_global_id(0) * CELLIST_SORT_LISTS;
     if (begin >= cellist_cells(lists)) return;
@@ -91,7 +93,7 @@ kernel void cellist_sort_partial(CELLIST_LISTS(CELLIST_RECORD, lists), uint top_
 #else
             ++next[i];
 #endif
-            cellist_sort_take(CELLIST_PASS(lists), &tops[i], top_k, step, node);
+            cellist_sort_take(CELLIST_PASS(lists), &tops[i], top_k, step, node, values);
             lengths[i] = step + 1;
             more = 1;
         }

@@ -38,7 +38,7 @@ int main() {
     hits.sort(&Hit::depth);
     const auto ascending = hits.download();
     hits.sort(&Hit::depth, cellist::Order::descending);
-    hits.sort_by("fabs(record.depth - 500.0f)");
+    hits.sort_by("fabs(record.depth - centre)", {{"centre", 500.0f}});
     const auto around = hits.download();
     hits.sort_async(&Hit::depth);
     check(std::ranges::equal(hits.download().records(), ascending.records(),

@@ -13,3 +13,4 @@
 #include <cellist/report.hpp>
 #include <cellist/shape.hpp>
 #include <cellist/struct.hpp>
+#include <cellist/value.hpp>

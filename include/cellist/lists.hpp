@@ -23,6 +23,7 @@
 #include <cellist/report.hpp>
 #include <cellist/shape.hpp>
 #include <cellist/struct.hpp>
+#include <cellist/value.hpp>
 
 namespace cellist {
 
@@ -195,8 +196,18 @@ public:
     /// with get_global_id(). The lists are then in no particular order. The expression is your code
     /// and runs inside the library's kernel. Undefined operations are your risk: an index outside
     /// an array can end the process on a CPU.
+    ///
+    /// Values are names for the expression, which the kernels take as arguments: another value of
+    /// the same type compiles nothing. The expression need not use them all. Throws Error for an
+    /// invalid name (see Value), and if all values together take more than 512 bytes.
+    ///
+    ///     hits.sort_by("distance(record.position, query)", {{"query", point}});
     cl::Event sort_by(const std::string& expression, Order order = Order::ascending) {
-        return core_->sort({expression, 64, order}, all_nodes);
+        return sort_by(expression, {}, order);
+    }
+    cl::Event sort_by(const std::string& expression, const Values& values,
+                      Order order = Order::ascending) {
+        return core_->sort({expression, 64, order, values}, all_nodes);
     }
 
     /// Sorts only the first `count` nodes of every list: the nodes that sort() would put there. The
@@ -209,7 +220,11 @@ public:
     }
     cl::Event partial_sort_by(const std::string& expression, std::uint32_t count,
                               Order order = Order::ascending) {
-        return core_->sort({expression, 64, order}, count);
+        return partial_sort_by(expression, {}, count, order);
+    }
+    cl::Event partial_sort_by(const std::string& expression, const Values& values,
+                              std::uint32_t count, Order order = Order::ascending) {
+        return core_->sort({expression, 64, order, values}, count);
     }
 
     /// Sorts without blocking and without a second pool. One work-item sorts each list in place,
@@ -220,7 +235,11 @@ public:
         return core_->sort_async(key_of(member, order));
     }
     cl::Event sort_by_async(const std::string& expression, Order order = Order::ascending) {
-        return core_->sort_async({expression, 64, order});
+        return sort_by_async(expression, {}, order);
+    }
+    cl::Event sort_by_async(const std::string& expression, const Values& values,
+                            Order order = Order::ascending) {
+        return core_->sort_async({expression, 64, order, values});
     }
 
     /// Measures the lists. Blocks.
@@ -314,8 +333,10 @@ private:
     static detail::SortKey key_of(M T::*member, Order order) {
         static_assert(detail::Scalar<M>,
                       "records are ordered by a scalar member, or by an expression");
-        return {std::string("record.") + detail::member_name(member), sizeof(M) <= 4 ? 32u : 64u,
-                order};
+        return {std::string("record.") + detail::member_name(member),
+                sizeof(M) <= 4 ? 32u : 64u,
+                order,
+                {}};
     }
 
     /// Packs the value of type M that `member` selects from each record.

@@ -235,6 +235,11 @@ const std::optional<Profile>& DeviceState::profile() {
     return profile_;
 }
 
+std::size_t DeviceState::programs_kept() {
+    const std::lock_guard lock(mutex_);
+    return programs_.size();
+}
+
 cl::Program DeviceState::program(const std::string& source, const std::string& options) {
     const std::string key = options + '\0' + source;
     const std::lock_guard lock(mutex_);

@@ -50,6 +50,8 @@ struct DeviceState {
 
     /// Programs that are kept. One takes about 1 MB of the host under PoCL.
     static constexpr std::size_t programs_max = 128;
+    /// How many are kept now. Any thread may call it.
+    [[nodiscard]] std::size_t programs_kept();
 
 private:
     [[nodiscard]] cl::Program build_program(const std::string& source,

@@ -28,10 +28,11 @@ public:
     RecordKernels(MemoryOwner device, Definitions definitions);
 
     /// The kernel `name` of a program: the definitions, then the files. CELLIST_RECORD is the
-    /// record; the containers among the arguments have this mode, as in view.h. The reference is
-    /// valid until the next call. Throws OpenClError.
+    /// record; the containers among the arguments have this mode, as in view.h. `types` are those
+    /// that the definitions use. The reference is valid until the next call. Throws OpenClError.
     [[nodiscard]] Kernel& get(std::initializer_list<KernelFile> files, const char* name,
-                              unsigned mode, const std::string& definitions = {});
+                              unsigned mode, const std::string& definitions = {},
+                              const Definitions& types = {});
     [[nodiscard]] const RecordType& record() const { return definitions_.records.back(); }
     /// Owns the memory of the container that is not of its storage.
     [[nodiscard]] const MemoryOwner& owner() const { return device_; }
@@ -42,7 +43,7 @@ private:
 
     MemoryOwner device_;
     Definitions definitions_;
-    /// By name, mode and definitions.
+    /// By name, mode, and definitions with the types that they use.
     Recent<std::tuple<std::string, unsigned, std::string>, Kernel> kernels_{kernels_max};
 };
 

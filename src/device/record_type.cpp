@@ -146,6 +146,10 @@ std::string words_definition(const RecordType& record) {
 
 }  // namespace
 
+std::string RecordType::definition() const {
+    return struct_definition(*this) + layout_checks(*this);
+}
+
 void Definitions::add(const RecordType& record) {
     const auto known = std::find_if(records.begin(), records.end(), [&](const RecordType& other) {
         return other.name == record.name;
@@ -181,7 +185,7 @@ std::string Definitions::source() const {
         text += "#define cellist_key_" + name + " " + std::to_string(number) + "u\n";
 
     for (const RecordType& record : records) {
-        text += struct_definition(record) + layout_checks(record) + order_definition(record);
+        text += record.definition() + order_definition(record);
         text += "#if CELLIST_MODES & (CELLIST_THRESHOLD_PASS | CELLIST_SELECTION_PASS)\n" +
                 words_definition(record) + "#endif\n";
         text += "CELLIST_DEFINE_NODE(" + record.name + ", " +

@@ -6,7 +6,7 @@
 
 #include "cellist_kernels.hpp"
 #include "device/record_kernels.hpp"
-#include "sort/expression.hpp"
+#include "sort/key.hpp"
 #include "sort/sort.hpp"
 #include "storage/cell_scan.hpp"
 #include "storage/container_storage.hpp"
@@ -199,14 +199,14 @@ void Arguments::add_lists(const ListsCore& lists) {
 unsigned read_mode(const ListsCore& lists) { return lists.mode(); }
 
 cl::Event ListsCore::sort(const SortKey& key, std::uint32_t top_k) {
-    check_expression(key.expression);
+    check_key(key);
     require_not_building();
     make_ready();
     return sorter().sort(storage_->in_use(), key, top_k);
 }
 
 cl::Event ListsCore::sort_async(const SortKey& key) {
-    check_expression(key.expression);
+    check_key(key);
     require_not_building();
     make_ready_for_commands();
     return sorter().sort_in_place(storage_->in_use(), key);

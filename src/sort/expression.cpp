@@ -58,6 +58,15 @@ bool is_type(std::string_view name) {
            contains(vector_lengths, name.substr(end));
 }
 
+/// Keywords of OpenCL C that are not types.
+constexpr std::array keywords{
+    "auto"sv,      "break"sv,      "case"sv,     "constant"sv, "continue"sv, "default"sv,
+    "do"sv,        "else"sv,       "enum"sv,     "extern"sv,   "for"sv,      "global"sv,
+    "goto"sv,      "if"sv,         "inline"sv,   "kernel"sv,   "local"sv,    "private"sv,
+    "read_only"sv, "read_write"sv, "register"sv, "restrict"sv, "return"sv,   "sizeof"sv,
+    "static"sv,    "struct"sv,     "switch"sv,   "typedef"sv,  "union"sv,    "while"sv,
+    "write_only"sv};
+
 /// An open bracket.
 struct Bracket {
     char closing;
@@ -147,6 +156,16 @@ void check_expression(std::string_view text) {
         before = may_be_pointer ? Token::pointer : c == '.' ? Token::member_access : Token::other;
     }
     if (!open.empty()) refuse(text, text.size(), "no " + quoted({&open.back().closing, 1}));
+}
+
+void check_value_name(std::string_view name) {
+    const std::string called = "a value of an expression is called " + quoted(name);
+    if (name.empty() || digits.find(name[0]) != std::string_view::npos ||
+        name.find_first_not_of(name_characters) != std::string_view::npos)
+        throw Error(called + ": use letters, digits and underscores, and no digit first");
+    if (name == "record" || contains(keywords, name) || is_type(name) || is_refused(name) ||
+        name.starts_with("cellist_") || name.starts_with("CELLIST_"))
+        throw Error(called + ", which is reserved: rename it");
 }
 
 }  // namespace cellist::detail

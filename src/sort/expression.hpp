@@ -16,4 +16,7 @@ constexpr std::size_t expression_length_max = 1024;
 /// types; nothing checks values and indices.
 void check_expression(std::string_view text);
 
+/// Throws Error unless an expression can use a value of this name.
+void check_value_name(std::string_view name);
+
 }  // namespace cellist::detail

@@ -1,8 +1,8 @@
 #include "sort/sort.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 #include "cellist_kernels.hpp"
@@ -20,66 +20,26 @@ constexpr unsigned segment_bits = 9;
 /// Longest list in which one work-item looks for the top k.
 constexpr cl_uint top_k_length_max = 4096;
 
-template <class... T>
-Arguments arguments_of(const T&... values) {
-    Arguments arguments;
-    (arguments.add(values), ...);
-    return arguments;
+/// Adds an argument, the arguments of a container, or other arguments.
+template <class T>
+void add(Arguments& arguments, const T& value) {
+    if constexpr (std::is_base_of_v<ListStorage, T>)
+        value.add_to(arguments);
+    else if constexpr (std::is_same_v<T, Arguments>)
+        arguments.append(value);
+    else
+        arguments.add(value);
 }
 
 template <class... T>
-Arguments arguments_of(const ListStorage& storage, const T&... values) {
+Arguments arguments_of(const T&... values) {
     Arguments arguments;
-    storage.add_to(arguments);
-    (arguments.add(values), ...);
+    (add(arguments, values), ...);
     return arguments;
 }
 
 std::string define(const char* name, unsigned value) {
     return std::string("#define CELLIST_SORT_") + name + " " + std::to_string(value) + "\n";
-}
-
-bool in_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
-
-/// Whether a key is the value of a member, which is the same whenever it is read.
-bool is_member(const SortKey& key) {
-    constexpr std::string_view prefix = "record.";
-    return key.expression.starts_with(prefix) &&
-           std::all_of(key.expression.begin() + prefix.size(), key.expression.end(), in_name);
-}
-
-/// An expression of `record`, rewritten to read the record through a pointer. A private copy of a
-/// large record would take too much memory.
-std::string of_pointer(std::string_view expression) {
-    std::string text;
-    char before = ' ';  // the last character that is no blank
-    for (std::size_t at = 0; at < expression.size();) {
-        std::size_t end = at + 1;
-        if (in_name(expression[at]))
-            while (end < expression.size() && in_name(expression[end])) ++end;
-        const std::string_view part = expression.substr(at, end - at);
-        text += part == "record" && before != '.' ? "(*cellist_sort_at)" : std::string(part);
-        if (std::isspace(static_cast<unsigned char>(part.back())) == 0) before = part.back();
-        at = end;
-    }
-    return text;
-}
-
-/// Defines cellist_sort_key.
-std::string key_function(const SortKey& key) {
-    const std::string type = key.bits == 32 ? "uint" : "ulong";
-    // Where clang knows that a value is undefined, it is an error: the sort around it would be
-    // undefined as well.
-    return "#ifdef __clang__\n#pragma clang diagnostic push\n"
-           "#pragma clang diagnostic error \"-Wdivision-by-zero\"\n"
-           "#pragma clang diagnostic error \"-Warray-bounds\"\n#endif\n"
-           "#line 1 \"sort expression\"\n"
-           "static inline " +
-           type +
-           " cellist_sort_key(global const struct CELLIST_RECORD* cellist_sort_at) { return (" +
-           type + ")" + (key.order == Order::descending ? "~" : "") +
-           "cellist_order(\n#line 1 \"sort expression\"\n" + of_pointer(key.expression) +
-           "\n); }\n#ifdef __clang__\n#pragma clang diagnostic pop\n#endif\n";
 }
 
 /// The type of the pieces in which large nodes move: the widest vector whose size divides a node.
@@ -102,7 +62,7 @@ std::string definitions_of(const RecordType& record, bool linked, const SortKey&
     const std::string piece = piece_type(linked ? node_layout(record).size : record.size);
     return define("KEY_BITS", key.bits) + define("KEEPS_KEYS", is_member(key) ? 0 : 1) +
            define("SEGMENT_BITS", segment_bits) +
-           (piece.empty() ? "" : "#define CELLIST_SORT_PIECE " + piece + "\n") + key_function(key);
+           (piece.empty() ? "" : "#define CELLIST_SORT_PIECE " + piece + "\n");
 }
 
 std::string definitions_of(const SortTuning& tuning) {
@@ -120,7 +80,8 @@ ListSorter::ListSorter(MemoryOwner device, RecordKernels& kernels)
 Kernel& ListSorter::kernel(const KernelFile& file, const char* name, const Sort& sort,
                            const SortTuning& tuning) {
     return kernels_.get({{"sort.cl", kernels::sort_cl}, file}, name, sort.storage.mode(),
-                        definitions_of(tuning) + sort.definitions);
+                        definitions_of(tuning) + sort.definitions + sort.program.source,
+                        sort.program.types);
 }
 
 void ListSorter::clear_state() {
@@ -167,6 +128,7 @@ ListSorter::Sort ListSorter::sort_of(ListStorage& storage, const SortKey& key) c
             .key = key,
             .plan = SortPlan(device_type_, device_->info, linked, kernels_.record().size),
             .linked = linked,
+            .program = key_program(key),
             .definitions = definitions_of(kernels_.record(), linked, key),
             .count = storage.cells()};
 }
@@ -210,8 +172,8 @@ void ListSorter::sort_in_place(Sort& sort) {
     const auto count = static_cast<cl_uint>(sort.count);
     kernel({"sort_in_place.cl", kernels::sort_in_place_cl}, "cellist_sort_in_place", sort,
            sort.plan.of_long_lists())
-        .enqueue(Range::padded(count, 64), arguments_of(sort.storage, cells, listed, count),
-                 &sort.done);
+        .enqueue(Range::padded(count, 64),
+                 arguments_of(sort.storage, cells, listed, count, sort.program.values), &sort.done);
 }
 
 /// True if the top k records of every list are its first nodes then. False if lists are to be
@@ -223,8 +185,10 @@ bool ListSorter::select_top_k(Sort& sort, std::uint32_t top_k) {
     const SortTuning tuning = sort.plan.of_top_k(top_k);
     clear_state();
     kernel({"sort_partial.cl", kernels::sort_partial_cl}, "cellist_sort_partial", sort, tuning)
-        .enqueue(Range::padded((sort.count + tuning.lists - 1) / tuning.lists, 64),
-                 arguments_of(sort.storage, top_k, top_k_length_max, state_.cl()), &sort.done);
+        .enqueue(
+            Range::padded((sort.count + tuning.lists - 1) / tuning.lists, 64),
+            arguments_of(sort.storage, top_k, top_k_length_max, state_.cl(), sort.program.values),
+            &sort.done);
     read_state(sort);
     if (sort.state.longer[0] > 0) return false;
     check_nodes(sort);
@@ -276,8 +240,9 @@ void ListSorter::sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage)
     if (longer.size_bytes() < most * sizeof(cl_uint))
         longer = Memory(device_, most, sizeof(cl_uint), "cells with long lists");
     const auto [cells, listed] = cells_of(sort);
-    Arguments arguments = arguments_of(storage, cells, listed, static_cast<cl_uint>(sort.count),
-                                       longer.cl(), static_cast<cl_uint>(most), stage, state_.cl());
+    Arguments arguments =
+        arguments_of(storage, cells, listed, static_cast<cl_uint>(sort.count), longer.cl(),
+                     static_cast<cl_uint>(most), stage, state_.cl(), sort.program.values);
     if (sort.linked) {
         const NodePool::BackBuffer* back_buffer = sort.storage.pool().back_buffer();
         arguments.add(back_buffer->heads.cl());
@@ -355,7 +320,8 @@ void ListSorter::merge(Sort& sort, const Memory& long_lists, const Memory& chunk
     run_long(
         sort, "cellist_sort_chunks",
         Range::padded(std::uint64_t{chunks} * tuning.items, tuning.items == 1 ? 16 : tuning.items),
-        arguments_of(long_lists.cl(), chunk_owners.cl(), chunks, nodes, keys.of_pool.cl()));
+        arguments_of(long_lists.cl(), chunk_owners.cl(), chunks, nodes, keys.of_pool.cl(),
+                     sort.program.values));
 
     const unsigned merges_a_chunk = std::max(tuning.chunk_size / tuning.merge_items, 1u);
     const Range merges =
@@ -365,9 +331,10 @@ void ListSorter::merge(Sort& sort, const Memory& long_lists, const Memory& chunk
     const cl::Buffer* keys_from = &keys.of_pool.cl();
     const cl::Buffer* keys_to = &keys.of_back_buffer.cl();
     for (std::uint64_t run = tuning.chunk_size; run < sort.state.longest; run *= 2) {
-        run_long(sort, "cellist_sort_merge_runs", merges,
-                 arguments_of(long_lists.cl(), chunk_owners.cl(), chunks, *from, *to,
-                              static_cast<cl_uint>(run), *keys_from, *keys_to));
+        run_long(
+            sort, "cellist_sort_merge_runs", merges,
+            arguments_of(long_lists.cl(), chunk_owners.cl(), chunks, *from, *to,
+                         static_cast<cl_uint>(run), *keys_from, *keys_to, sort.program.values));
         std::swap(from, to);
         std::swap(keys_from, keys_to);
     }

@@ -14,6 +14,7 @@
 #include "device/device_state.hpp"
 #include "device/record_kernels.hpp"
 #include "device/view.hpp"
+#include "sort/key.hpp"
 #include "sort/sort_tuning.hpp"
 #include "storage/storage.hpp"
 
@@ -43,7 +44,8 @@ private:
         const SortKey& key;
         SortPlan plan;
         bool linked;
-        std::string definitions;   ///< for all kernels of this sort
+        KeyProgram program;
+        std::string definitions;   ///< for all kernels of this sort, except the program of the key
         std::uint64_t count;       ///< lists that are left
         const Memory* cells = {};  ///< whose lists these are; null for all
         cl::Event done = {};       ///< of the last command

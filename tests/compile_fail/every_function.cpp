@@ -14,6 +14,7 @@
 #include <cellist/report.hpp>
 #include <cellist/shape.hpp>
 #include <cellist/struct.hpp>
+#include <cellist/value.hpp>
 #if __has_include(<glm/glm.hpp>)
 #include <cellist/glm.hpp>
 #endif
@@ -77,6 +78,10 @@ std::size_t use(const cellist::Device& device) {
     hits.sort(&Hit::depth);
     hits.sort(&Hit::time, Order::descending).wait();
     hits.sort_by("record.depth");
+    hits.sort_by("record.depth * scale", {{"scale", 2.0f}});
+    hits.sort_by("record.id ^ mask", Values{{"mask", cl_uint{3}}}, Order::descending);
+    hits.partial_sort_by("distance(record.colour, query)", {{"query", cl_float4{}}}, 3);
+    hits.sort_by_async("record.depth < corner.tag", {{"corner", Corner{}}}, Order::descending);
     hits.partial_sort(&Hit::id, 3);
     hits.partial_sort_by("record.id", 3, Order::descending);
     hits.sort_async(&Hit::weight);

@@ -14,6 +14,7 @@
 #include <cellist/options.hpp>
 #include <cellist/report.hpp>
 #include <cellist/shape.hpp>
+#include <cellist/value.hpp>
 
 namespace cellist::detail {
 
@@ -29,8 +30,7 @@ struct SortKey {
     std::string expression;  ///< of `record`
     unsigned bits;           ///< 32 or 64: what its values need
     Order order;
-
-    friend auto operator<=>(const SortKey&, const SortKey&) = default;
+    Values values = {};  ///< that the expression uses
 };
 
 /// What a container is doing. Build moves its containers from ready to building, pending and back,

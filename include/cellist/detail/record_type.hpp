@@ -22,6 +22,9 @@ struct RecordType {
     std::size_t size = 0;
     std::size_t alignment = 1;
     std::vector<RecordMember> members;
+
+    /// The OpenCL C source that defines the struct and checks its layout.
+    [[nodiscard]] std::string definition() const;
 };
 
 /// The types that a program needs, each after the types that it is made of.
