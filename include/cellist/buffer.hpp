@@ -23,6 +23,9 @@ class Buffer {
     static_assert(std::is_trivially_copyable_v<T>, "a Buffer holds trivially copyable elements");
 
 public:
+    /// No buffer yet: as if moved from.
+    Buffer() = default;
+
     /// Allocates `size` uninitialised elements. Throws MemoryError if they exceed the device's
     /// largest allocation.
     Buffer(const Device& device, std::size_t size) : Buffer(device.state(), size) {}
@@ -77,6 +80,12 @@ public:
     /// @private
     Buffer(const std::shared_ptr<detail::DeviceState>& device, std::size_t size)
         : memory_(device, size, sizeof(T)) {}
+    /// @private Allocates anew unless there is room for `size` elements.
+    void reserve(const std::shared_ptr<detail::DeviceState>& device, std::size_t size) {
+        if (memory_.cl()() == nullptr || memory_.size_bytes() < size * sizeof(T) ||
+            memory_.device() != device)
+            *this = Buffer(device, size);
+    }
     /// @private
     [[nodiscard]] const detail::Memory& memory() const {
         (void)memory_.device();  // throws if it was moved from

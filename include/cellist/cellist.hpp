@@ -7,6 +7,7 @@
 #include <cellist/host_lists.hpp>
 #include <cellist/kernel.hpp>
 #include <cellist/lists.hpp>
+#include <cellist/neighbours.hpp>
 #include <cellist/options.hpp>
 #include <cellist/pending.hpp>
 #include <cellist/range.hpp>

@@ -18,6 +18,7 @@
 #include <cellist/device.hpp>
 #include <cellist/host_lists.hpp>
 #include <cellist/kernel.hpp>
+#include <cellist/neighbours.hpp>
 #include <cellist/options.hpp>
 #include <cellist/pending.hpp>
 #include <cellist/report.hpp>
@@ -293,6 +294,58 @@ public:
     [[nodiscard]] Packed<typename detail::Element<M>::type> pack(M T::*member) const {
         return pack<M, typename detail::Element<M>::type>(std::string(".") +
                                                           detail::member_name(member));
+    }
+
+    /// Finds the neighbours of every record: the other records up to a distance, in the cells around
+    /// the record's own. An index is a record's place in pack(), or the value of the member `index`.
+    /// Places stay the same until the lists are built or sorted. Pass the last result as `reuse` to
+    /// keep its buffers.
+    ///
+    ///     auto found = particles.neighbours({.distance = "distance(record.at, other.at)",
+    ///                                        .radius = 0.1f});
+    ///
+    /// On GPUs, and in storages other than Storage::counted, takes another 4 bytes of device memory
+    /// a record, or a copy of all records. Blocks until the number of pairs is known, and while it
+    /// compiles kernels. Throws Error for an invalid expression or value. Throws MemoryError if
+    /// there are more than 2^32 - 1 pairs.
+    [[nodiscard]] Neighbours neighbours(const NeighbourOptions& options,
+                                        Neighbours reuse = {}) const {
+        detail::find_neighbours(*core_, options, "", reuse);
+        return reuse;
+    }
+    [[nodiscard]] Neighbours neighbours(cl_uint T::*index, const NeighbourOptions& options,
+                                        Neighbours reuse = {}) const {
+        detail::find_neighbours(*core_, options, detail::member_name(index), reuse);
+        return reuse;
+    }
+
+    /// Finds the k records nearest to each query, in the cells around the query: with their
+    /// distances, nearest first. The members order records with equal distances, as in sort(). So
+    /// the result does not depend on the order of insertion. A query is a scalar, a vector, or an
+    /// adapted struct, and may be outside of the shape. Pass the last result as `reuse` to keep its
+    /// buffers.
+    ///
+    ///     auto found = photons.nearest(queries, {.k = 50,
+    ///                                            .position = "query.xyz / 0.1f",
+    ///                                            .distance = "distance(record.at, query)",
+    ///                                            .radius = 0.1f});
+    ///
+    /// Blocks only for a pending build, and while it compiles kernels. Throws Error for an invalid
+    /// expression or value, and if k exceeds 64.
+    template <class Q>
+    [[nodiscard]] Nearest<T> nearest(const Buffer<Q>& queries, const NearestOptions& options,
+                                     Nearest<T> reuse = {}) const {
+        static_assert(detail::KnownOnDevice<Q>);
+        detail::check_nearest(options);
+        const std::size_t count = queries.size();
+        reuse.counts.reserve(core_->device(), count);
+        reuse.records.reserve(core_->device(), count * options.k);
+        reuse.distances.reserve(core_->device(), count * options.k);
+        detail::find_nearest(
+            *core_, options,
+            {detail::definitions_of<Q>(), DeviceType<Q>::name(), queries.memory(), count,
+             reuse.counts.memory(), reuse.records.memory(), reuse.distances.memory()});
+        return reuse;
     }
 
     /// Checks that exactly one head reaches every allocated node, exactly once. Also counts inserts

@@ -44,7 +44,7 @@ private:
         const SortKey& key;
         SortPlan plan;
         bool linked;
-        KeyProgram program;
+        ExpressionProgram program;
         std::string definitions;   ///< for all kernels of this sort, except the program of the key
         std::uint64_t count;       ///< lists that are left
         const Memory* cells = {};  ///< whose lists these are; null for all

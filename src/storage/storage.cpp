@@ -45,6 +45,13 @@ void ListStorage::add_to(Arguments& arguments, Inserts inserts) const {
     add_to(arguments, pool_.nodes(), pool_.heads(), view(inserts));
 }
 
+void ListStorage::add_contiguous_to(Arguments& arguments, const Memory& records,
+                                    const Memory& offsets) const {
+    cellist_view contiguous = view(Inserts::refused);
+    contiguous.mode = CELLIST_CONTIGUOUS;
+    add_to(arguments, records, offsets, contiguous);
+}
+
 void ListStorage::add_to(Arguments& arguments, const Memory& nodes, const Memory& heads,
                          const cellist_view& view) const {
     arguments.add_nodes(nodes, record().name);

@@ -90,6 +90,9 @@ public:
 
     /// Adds what CELLIST_LISTS declares.
     virtual void add_to(Arguments& arguments, Inserts inserts = Inserts::refused) const;
+    /// The same for a copy of the lists whose mode is CELLIST_CONTIGUOUS.
+    void add_contiguous_to(Arguments& arguments, const Memory& records,
+                           const Memory& offsets) const;
 
     [[nodiscard]] const NodePool& pool() const { return pool_; }
     [[nodiscard]] NodePool& pool() { return pool_; }

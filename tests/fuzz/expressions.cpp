@@ -13,7 +13,7 @@
 #include <cellist/cellist.hpp>
 
 #include "input.hpp"
-#include "sort/expression.hpp"
+#include "expression/expression.hpp"
 
 namespace cellist::fuzz {
 

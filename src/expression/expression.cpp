@@ -1,4 +1,4 @@
-#include "sort/expression.hpp"
+#include "expression/expression.hpp"
 
 #include <algorithm>
 #include <array>
@@ -25,11 +25,21 @@ constexpr std::array refused_operators{"//"sv, "/*"sv, "??"sv, "<%"sv, "%>"sv, "
                                        ":>"sv, "->"sv, "++"sv, "--"sv, "+="sv, "-="sv,  "*="sv,
                                        "/="sv, "%="sv, "&="sv, "|="sv, "^="sv, "<<="sv, ">>="sv};
 
-// The function around the expression, calls that all work-items must reach, and calls that write or
+// The functions around expressions, calls that all work-items must reach, and calls that write or
 // wait.
-constexpr std::array refused_names{
-    "cellist_sort_key"sv, "asm"sv,    "barrier"sv, "fract"sv, "frexp"sv, "lgamma_r"sv, "modf"sv,
-    "prefetch"sv,         "printf"sv, "remquo"sv,  "sincos"sv};
+constexpr std::array refused_names{"cellist_sort_key"sv,
+                                   "cellist_distance"sv,
+                                   "cellist_query_position"sv,
+                                   "asm"sv,
+                                   "barrier"sv,
+                                   "fract"sv,
+                                   "frexp"sv,
+                                   "lgamma_r"sv,
+                                   "modf"sv,
+                                   "prefetch"sv,
+                                   "printf"sv,
+                                   "remquo"sv,
+                                   "sincos"sv};
 // "__" begins what belongs to the compiler: its functions, and inline assembly.
 constexpr std::array refused_prefixes{
     "__"sv,          "async_"sv,         "atom_"sv,  "atomic_"sv,    "cellist_insert"sv,
