@@ -344,6 +344,23 @@ kernel void positions(global const float4* points, global int4* found)
             CHECK(positions[i].s[axis] == expected[i][axis]);
 }
 
+TEST_CASE("the length of a vector") {
+    Kernel kernel(device(), R"(
+kernel void lengths(const float4 v, global float* found)
+{
+    found[0] = cellist_length(v.xy);
+    found[1] = cellist_length(v.xyz);
+    found[2] = cellist_length(v);
+}
+)",
+                  "lengths");
+    Buffer<cl_float> found(device(), 3);
+    kernel.run(1, cl_float4{{3, -4, 12, 84}}, found);
+    CHECK(found.download()[0] == Approx(5));
+    CHECK(found.download()[1] == Approx(13));
+    CHECK(found.download()[2] == Approx(85));
+}
+
 TEST_CASE("the minimum image of a difference") {
     Kernel kernel(device(), R"(
 kernel void images(global const float4* differences, const float4 box, global float4* found)

@@ -39,17 +39,14 @@ kernel void nearest(CELLIST_LISTS(Particle, bins), global const Particle* partic
                     global float* distances)
 {
     Particle p = particles[get_global_id(0)];
-    int x = p.x / cell_size, y = p.y / cell_size, z = p.z / cell_size;
+    uint cell = cellist_cell3(bins, p.x / cell_size, p.y / cell_size, p.z / cell_size);
     float least = cell_size;
-    for (int k = z - 1; k <= z + 1; ++k)
-        for (int j = y - 1; j <= y + 1; ++j)
-            for (int i = x - 1; i <= x + 1; ++i)
-                cellist_for_each(bins, cellist_cell3(bins, i, j, k), node) {
-                    Particle other = cellist_get(bins, node);
-                    if (other.id != p.id)
-                        least = fmin(least, distance((float3)(p.x, p.y, p.z),
-                                                     (float3)(other.x, other.y, other.z)));
-                }
+    cellist_for_each_around(bins, cell, 1, node) {
+        Particle other = cellist_get(bins, node);
+        if (other.id != p.id)
+            least = fmin(least, distance((float3)(p.x, p.y, p.z),
+                                         (float3)(other.x, other.y, other.z)));
+    }
     distances[get_global_id(0)] = least;
 }
 )";

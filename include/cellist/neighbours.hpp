@@ -21,9 +21,8 @@ struct NeighbourMemory;
 /// Lists::sort_by(): one OpenCL C expression that does not write.
 struct NeighbourOptions {
     /// The distance of two records: an expression of `record` and `other` with a float value, such
-    /// as "distance(record.position, other.position)". In a periodic box, use
-    /// cellist_minimum_image:
-    /// "length(cellist_minimum_image(record.position - other.position, box))".
+    /// as "distance(record.position, other.position)". The kernel functions cellist_minimum_image,
+    /// for periodic boxes, and cellist_length serve here.
     std::string distance;
     /// The largest distance of neighbours. NaN is no distance of neighbours.
     float radius = std::numeric_limits<float>::infinity();
