@@ -3,30 +3,41 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "particles_kernels.hpp"
 
 namespace particles {
 namespace {
 
+/// The square of the distance, the short way round in a periodic box. The same operations as in
+/// reference.cpp.
+constexpr auto distance_squared =
+    "fma(fmin(fabs(record.x - other.x), period - fabs(record.x - other.x)), "
+    "fmin(fabs(record.x - other.x), period - fabs(record.x - other.x)), "
+    "fma(fmin(fabs(record.y - other.y), period - fabs(record.y - other.y)), "
+    "fmin(fabs(record.y - other.y), period - fabs(record.y - other.y)), "
+    "fmin(fabs(record.z - other.z), period - fabs(record.z - other.z)) * "
+    "fmin(fabs(record.z - other.z), period - fabs(record.z - other.z))))";
+
 Space make_space(const Scene& scene, int cells_per_radius) {
     Space space{};
-    space.radius = scene.radius;
-    const auto radius = static_cast<double>(scene.radius);
-    double cells_per_unit = cells_per_radius / radius;
+    // Distances and places are rounded, by less than this part of the radius.
+    const double reach = static_cast<double>(scene.radius) * (1 + 1e-5);
+    double cells_per_unit = cells_per_radius / reach;
     if (scene.box == Box::periodic) {
         space.period = 1;
         // Few particles have large cells; beyond 1024 an axis would not fit into memory.
         cells_per_unit = std::clamp(std::floor(cells_per_unit), 1.0, 1024.0);
-        space.extent = static_cast<cl_int>(cells_per_unit);
+        space.extent = static_cast<std::uint64_t>(cells_per_unit);
     } else {
         // About as many lists as the unit box has cells. Any number is correct.
         space.period = std::numeric_limits<cl_float>::infinity();
-        space.extent = static_cast<cl_int>(std::clamp(std::ceil(cells_per_unit), 1.0, 1024.0));
+        space.extent =
+            static_cast<std::uint64_t>(std::clamp(std::ceil(cells_per_unit), 1.0, 1024.0));
     }
     space.cells_per_unit = static_cast<cl_float>(cells_per_unit);
-    // Distances and their squares are rounded as well, by less than a millionth of the radius.
-    space.reach = static_cast<cl_float>(radius * cells_per_unit * (1 + 4e-6));
+    space.radius_cells = static_cast<std::uint32_t>(cells_per_radius);
     return space;
 }
 
@@ -34,36 +45,36 @@ cellist::Source source() {
     return {.text = std::string(kernels::particles_cl), .file_name = "particles.cl"};
 }
 
-cellist::Shape shape_of(const Space& space) {
-    const auto extent = static_cast<std::uint64_t>(space.extent);
-    return {extent, extent, extent};
-}
-
 }  // namespace
 
 NeighbourSearch::NeighbourSearch(const cellist::Device& device, const Scene& scene,
                                  cellist::Storage storage, int cells_per_radius)
     : space_(make_space(scene, cells_per_radius)),
+      radius_(scene.radius),
       points_(device, scene.points),
-      lists_(device, shape_of(space_), {.storage = storage}),
-      sorted_{{device, 0}, {device, 0}},
+      lists_(device, {space_.extent, space_.extent, space_.extent},
+             {.storage = storage, .periodic = {true, true, true}}),
       found_(device, scene.points.size()),
-      insert_(device, source(), "insert_particles", lists_, cellist::type<Space>),
-      find_(device, source(), "find_neighbours", lists_, cellist::type<Space>) {}
+      insert_(device, source(), "insert_particles", lists_),
+      sum_(device, source(), "sum_neighbours", lists_) {}
 
 cellist::BuildReport NeighbourSearch::build() {
     const auto count = static_cast<cl_uint>(points_.size());
-    const cellist::BuildReport report =
-        lists_.build(insert_, cellist::Range::padded(count), points_, count, space_);
-    sorted_ = lists_.pack();
-    return report;
+    return lists_.build(insert_, cellist::Range::padded(count), points_, count, space_.period,
+                        space_.cells_per_unit);
 }
 
 void NeighbourSearch::find() {
-    const auto count = static_cast<cl_uint>(sorted_.records.size());
+    neighbours_ = lists_.neighbours(&Particle::id,
+                                    {.distance = distance_squared,
+                                     .radius = radius_ * radius_,
+                                     .radius_cells = space_.radius_cells,
+                                     .values = {{"period", space_.period}}},
+                                    std::move(neighbours_));
+    const auto count = static_cast<cl_uint>(neighbours_.records);
     found_.fill({{0, 0}});
-    find_.run(cellist::Range::padded(count, 64), sorted_.offsets, sorted_.records, count, space_,
-              found_);
+    sum_.run(cellist::Range::padded(count, 64), neighbours_.offsets, neighbours_.indices,
+             lists_.pack(&Particle::id).records, count, found_);
 }
 
 }  // namespace particles

@@ -16,13 +16,11 @@ CELLIST_STRUCT(Particle, x, y, z, id);
 
 /// The cells, and who is a neighbour.
 struct Space {
-    cl_float radius;
-    cl_float period;          ///< side of the periodic box, infinite in open space
-    cl_float cells_per_unit;  ///< along each axis
-    cl_float reach;           ///< the radius in cells, and a little more
-    cl_int extent;            ///< lists along each axis
+    cl_float period;             ///< side of the periodic box, infinite in open space
+    cl_float cells_per_unit;     ///< along each axis
+    std::uint64_t extent;        ///< lists along each axis
+    std::uint32_t radius_cells;  ///< cells along the radius
 };
-CELLIST_STRUCT(Space, radius, period, cells_per_unit, reach, extent);
 
 /// Finds the neighbours of every point of a scene.
 class NeighbourSearch {
@@ -32,9 +30,9 @@ public:
     NeighbourSearch(const cellist::Device& device, const Scene& scene, cellist::Storage storage,
                     int cells_per_radius);
 
-    /// Puts every particle into the list of its cell, then all lists behind one another. Blocks.
+    /// Puts every particle into the list of its cell. Blocks.
     cellist::BuildReport build();
-    /// Finds all neighbours. Does not block.
+    /// Finds all neighbours. Blocks until their number is known.
     void find();
 
     /// For each point, the number of its neighbours and the sum of their hashes. Blocks.
@@ -43,12 +41,13 @@ public:
 
 private:
     Space space_;
+    cl_float radius_;
     cellist::Buffer<cl_float4> points_;
     cellist::Lists<Particle> lists_;
-    cellist::Packed<Particle> sorted_;
+    cellist::Neighbours neighbours_;
     cellist::Buffer<cl_uint2> found_;
     cellist::Kernel insert_;
-    cellist::Kernel find_;
+    cellist::Kernel sum_;
 };
 
 }  // namespace particles
