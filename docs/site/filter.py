@@ -4,8 +4,8 @@
 
 Guides: Doxygen 1.9.4 knows no anchors like GitHub's, so each heading gets one, and links refer to
 them. Links to other files of the project lead to copies of them, which scripts/docs makes.
-lists.clh: only the public macros stay, with their comments. Headers: Doxygen lists the macros of
-files that are documented.
+Device headers: only the public macros stay, with their comments. Headers: Doxygen lists the macros
+of files that are documented.
 
 With --linked, prints the files that the guides link to, one a line.
 """
