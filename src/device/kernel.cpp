@@ -48,6 +48,7 @@ const ProgramText& library_text() {
 #undef CELLIST_ADD_STORAGE
         text.add(kernels::lists_clh, "cellist/lists.clh");
         text.add(kernels::around_clh, "cellist/around.clh");
+        text.add(kernels::hash_clh, "cellist/hash.clh");
         return text;
     }();
     return library;
