@@ -3,6 +3,8 @@
 //   heads     the counts of the cells, from counts_at on
 //   offsets   cells + 1   out: where lists with these counts begin, none over `capacity`. May be
 //                         heads, even in the place of the counts
+//   kept      cells + 1   the offsets of lists that keep their lengths where the capacity is too
+//                         small; the counts include these lists. Any buffer if `keeps` is 0
 //   sums      tiles     the sum of min(count, limit) over a tile, in 64 bits; then, in its place,
 //                       the sum of all tiles before it
 //   hashes    tiles     the sum of a hash of each cell and its count
@@ -116,7 +118,7 @@ kernel __attribute__((reqd_work_group_size(CELLIST_SCAN_GROUP, 1, 1))) void cell
 
 kernel __attribute__((reqd_work_group_size(CELLIST_SCAN_GROUP, 1, 1))) void cellist_tile_offsets(
     global const uint* heads, uint counts_at, uint cells, global const ulong* sums, uint capacity,
-    global uint* offsets) {
+    global const uint* kept, uint keeps, global uint* offsets) {
     local ulong group_sums[CELLIST_SCAN_GROUP];
     const uint item = get_local_id(0);
     const ulong first = ((ulong)get_group_id(0) * CELLIST_SCAN_GROUP + item) * CELLIST_SCAN_CELLS;
@@ -124,11 +126,13 @@ kernel __attribute__((reqd_work_group_size(CELLIST_SCAN_GROUP, 1, 1))) void cell
     for (uint i = 0; i < CELLIST_SCAN_CELLS; ++i)
         if (first + i < cells) sum += heads[counts_at + first + i];
     ulong at = sums[get_group_id(0)] + cellist_group_scan(group_sums, sum) - sum;
+    const uint room = capacity - (keeps ? kept[cells] : 0);
     for (uint i = 0; i < CELLIST_SCAN_CELLS; ++i) {
         // The cell after the last takes the end of the last list.
         if (first + i > cells) break;
         const uint count = first + i < cells ? heads[counts_at + first + i] : 0;
-        offsets[first + i] = (uint)min(at, (ulong)capacity);
+        const uint kept_before = keeps ? kept[first + i] : 0;
+        offsets[first + i] = kept_before + (uint)min(at - kept_before, (ulong)room);
         at += count;
     }
 }

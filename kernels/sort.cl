@@ -263,15 +263,6 @@ static inline void cellist_sort_permute(global cellist_sort_node* nodes, uint fi
 // shard, and one a thread slot.
 kernel void cellist_sort_allocate(CELLIST_LISTS(CELLIST_RECORD, lists), uint stored) {
     const cellist_view lists_view = cellist_view_of(lists);
-    const uint i = get_global_id(0);
-    const uint count = 1u << lists_view.shard_bits;
-    cellist_view view = lists_view;
-    view.pool_nodes = stored;
-    if (i < count) lists_shards[i].allocated = cellist_shard_nodes(view, i);
-    if (i < lists_view.thread_slots) {
-        volatile global cellist_thread_block* block = &cellist_thread_blocks(lists_shards, view)[i];
-        block->last = block->node;
-        block->end = block->next;
-    }
+    cellist_allocate_first(lists_shards, lists_view, stored, get_global_id(0));
 }
 #endif

@@ -1,6 +1,6 @@
 // Every kernel of the library once, at sizes that a simulator runs in seconds. ctest runs these
 // tests under Oclgrind too, which reports invalid accesses and data races.
-#include "support/inserts.hpp"
+#include "support/appends.hpp"
 #include "support/storages.hpp"
 
 namespace cellist::test {
@@ -18,6 +18,40 @@ TEST_CASE("a small container is built, grown, sorted, validated and downloaded",
     lists.sort(&Item::key);
     require_sound(lists, oracle.size());
     require_same(lists.download(), oracle);
+}
+
+TEST_CASE("a small container takes appends, and loses records", "[oclgrind]") {
+    const StorageOption storage =
+        GENERATE(StorageOption(Storage::linked), StorageOption(Storage::counted),
+                 StorageOption(Storage::fixed), nearest(&Item::key, 40));
+    const Overflow overflow = GENERATE(Overflow::grow, Overflow::drop);
+    CELLIST_RANDOM(random, 174u);
+    Lists<Item> lists(device(), {10},
+                      {.storage = storage,
+                       .overflow = overflow,
+                       .capacity_nodes = overflow == Overflow::grow ? 60 : 300,
+                       .slots = overflow == Overflow::grow ? 5 : 40});
+    Inserter inserter(lists);
+    Oracle<Item> oracle;
+    for (int again = 0; again < 3; ++again) {
+        const Inserts<Item> inserts = random_inserts(60, 10, random);
+        const BuildReport report = append(inserter, lists, inserts);
+        REQUIRE(report.existing == oracle.size());
+        oracle.merge(oracle_of(inserts, 10));
+        require_sound(lists, oracle.size());
+        require_same(lists.download(), oracle);
+    }
+    REQUIRE_THROWS_AS(lists.append([&] {
+        inserter.run(lists, random_inserts(20, 10, random));
+        throw std::runtime_error("the caller's own");
+    }),
+                      std::runtime_error);
+    require_same(lists.download(), oracle);
+    const Lists<Item> copy = lists.copy();
+    require_same(copy.download(), oracle);
+    lists.remove_if("record.id >= 10");
+    REQUIRE(lists.device_histogram(300).download()[3] + lists.device_offsets().download()[10] > 0);
+    REQUIRE(lists.merge(copy).stored == oracle.size() + 30);
 }
 
 TEST_CASE("a small pool of several shards overflows", "[oclgrind]") {

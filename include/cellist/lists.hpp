@@ -73,7 +73,9 @@ struct Element<M[count]> {
 /// - Error if a build's function uses the lists that the build fills.
 ///
 /// A comment names further exceptions. After an exception from a build or from clear(), the lists
-/// are empty. Other functions keep the records, unless the comment says otherwise.
+/// are empty. After an exception from append(), merge() or remove_if(), they hold the same records
+/// as before. They are empty if the device fails again while it restores them. Other functions
+/// keep the records, unless the comment says otherwise.
 template <class T>
 class Lists {
     static_assert(detail::Adapted<T>, "adapt the record with CELLIST_STRUCT first");
@@ -106,12 +108,7 @@ public:
     /// available.
     template <class... Args>
     BuildReport build(Kernel& kernel, const Range& range, const Args&... args) {
-        return core_->build([&] {
-            detail::Arguments arguments;
-            arguments.add(*this);
-            (arguments.add(args), ...);
-            kernel.enqueue(range, arguments);
-        });
+        return core_->build([&] { run(kernel, range, args...); });
     }
 
     /// Builds the lists with several kernels. `insert` enqueues them all with Kernel::run. The
@@ -132,19 +129,58 @@ public:
     template <class... Args>
     [[nodiscard]] Pending<BuildReport> build_async(Kernel& kernel, const Range& range,
                                                    const Args&... args) {
-        detail::Arguments rest;
-        (rest.add(args), ...);
-        return build_async([core = core_.get(), & kernel, range, rest = std::move(rest)] {
-            detail::Arguments arguments;
-            core->add_to(arguments);
-            arguments.append(rest);
-            kernel.enqueue(range, arguments);
-        });
+        return build_async(run_later(kernel, range, args...));
     }
     [[nodiscard]] Pending<BuildReport> build_async(std::invocable auto&& insert) {
-        const auto build =
-            detail::Build::start({core_.get()}, std::forward<decltype(insert)>(insert));
-        return {build->enqueue_marker(), [core = core_, build] { return build->finish().front(); }};
+        return start(std::forward<decltype(insert)>(insert), detail::Existing::cleared);
+    }
+
+    /// Adds records to the lists: works as build(), but keeps the records that are there. The
+    /// report counts these as `existing`. After an exception the lists hold the existing records
+    /// alone.
+    ///
+    /// If the pool is too small, Overflow::grow enlarges it by half, or to the exact demand if that
+    /// is more or if half does not fit. Overflow::stop throws OverflowError. Overflow::drop drops
+    /// new records only. A storage of nearest() keeps the nearest of the existing and the new
+    /// records.
+    ///
+    /// In Storage::linked and Storage::fixed, an append takes the time of its own inserts, unless
+    /// the pool grows. Storage::fixed also copies and sums its counts. In all other cases the
+    /// append copies the existing records and inserts them again: it takes about as long as a build
+    /// of all records, and device memory for the copy. The order in a list is undefined afterwards.
+    template <class... Args>
+    BuildReport append(Kernel& kernel, const Range& range, const Args&... args) {
+        return core_->append([&] { run(kernel, range, args...); });
+    }
+    BuildReport append(std::invocable auto&& insert) { return core_->append(std::ref(insert)); }
+
+    /// Starts the same append; see build_async().
+    template <class... Args>
+    [[nodiscard]] Pending<BuildReport> append_async(Kernel& kernel, const Range& range,
+                                                    const Args&... args) {
+        return append_async(run_later(kernel, range, args...));
+    }
+    [[nodiscard]] Pending<BuildReport> append_async(std::invocable auto&& insert) {
+        return start(std::forward<decltype(insert)>(insert), detail::Existing::kept);
+    }
+
+    /// Appends the records of `other`, which keeps them. The report is that of an append. Throws
+    /// Error if `other` is the same object or has another shape, and what append() throws. Blocks.
+    BuildReport merge(const Lists& other) { return core_->merge(other.core()); }
+
+    /// Returns lists with the same options, which hold the same records in the same order. Throws
+    /// what the constructor throws. Blocks.
+    [[nodiscard]] Lists copy() const { return Lists(core_->copy()); }
+
+    /// Removes the records for which an OpenCL C expression of `record` and of values is not 0.
+    /// Returns the number of removed records. The other records keep their order. The room of the
+    /// removed records is free for later appends. Throws what sort_by() throws for an expression.
+    ///
+    ///     particles.remove_if("record.age > limit", {{"limit", 3.0f}});
+    ///
+    /// Takes device memory for a copy of all records. Blocks.
+    std::uint64_t remove_if(const std::string& expression, const Values& values = {}) {
+        return core_->remove_if(expression, values);
     }
 
     /// Builds more records than the pool may hold, a range of cells at a time. The budget, the
@@ -259,6 +295,31 @@ public:
                 }};
     }
 
+    /// Returns the length of every list, in device memory. Does not pack the lists. Does not block.
+    [[nodiscard]] Buffer<cl_uint> device_lengths() const {
+        Buffer<cl_uint> lengths(core_->device(), shape().cells());
+        core_->write_lengths(lengths.cl());
+        return lengths;
+    }
+    /// Returns the prefix sums of the lengths, cells + 1 elements in device memory: where each list
+    /// begins in Packed::records, and the number of records. Does not pack the lists. Does not
+    /// block.
+    [[nodiscard]] Buffer<cl_uint> device_offsets() const {
+        Buffer<cl_uint> offsets(core_->device(), shape().cells() + 1);
+        core_->write_offsets(offsets.cl());
+        return offsets;
+    }
+    /// Returns the number of cells by the length of their list, `bins` elements in device memory.
+    /// The last one also counts all longer lists. Throws Error if there are no bins. Does not
+    /// block.
+    [[nodiscard]] Buffer<cl_uint> device_histogram(std::uint32_t bins) const {
+        if (bins == 0) throw Error("a histogram needs at least one bin");
+        Buffer<cl_uint> histogram(core_->device(), bins);
+        histogram.fill(0);
+        core_->write_histogram(histogram.cl(), bins);
+        return histogram;
+    }
+
     /// Copies all lists to host memory. Blocks.
     [[nodiscard]] HostLists<T> download() const { return download_async().get(); }
     /// Like download(), but does not block if the records take up to 256 MiB and fit into one
@@ -352,10 +413,10 @@ public:
     /// outside a build. Finds any corruption of heads and links, in time proportional to cells +
     /// nodes.
     ///
-    /// Compares sums with those of the last build. Storage::counted compares the offsets with the
-    /// counts of the last build, and Storage::fixed compares the counts with their hash. So both
-    /// find a word that has changed. Takes one bit of device memory per node in Storage::linked,
-    /// and 4 bytes per cell in Storage::counted. Blocks.
+    /// Compares sums with those of the last build or append. Storage::counted compares the offsets
+    /// with the counts of the last build, and Storage::fixed compares the counts with their hash.
+    /// So both find a word that has changed. Takes one bit of device memory per node in
+    /// Storage::linked, and 4 bytes per cell in Storage::counted. Blocks.
     [[nodiscard]] Validation validate() const { return core_->validate()(); }
     /// Like validate(), but does not block.
     [[nodiscard]] Pending<Validation> validate_async() const {
@@ -380,6 +441,34 @@ public:
     [[nodiscard]] detail::ListsCore& core() const { return *core_; }
 
 private:
+    explicit Lists(std::shared_ptr<detail::ListsCore> core)
+        : core_("a Lists object", std::move(core)) {}
+
+    /// Enqueues a kernel with these lists as its first argument.
+    template <class... Args>
+    void run(Kernel& kernel, const Range& range, const Args&... args) {
+        detail::Arguments arguments;
+        arguments.add(*this);
+        (arguments.add(args), ...);
+        kernel.enqueue(range, arguments);
+    }
+    /// A function that does the same, with the arguments of now.
+    template <class... Args>
+    auto run_later(Kernel& kernel, const Range& range, const Args&... args) {
+        detail::Arguments rest;
+        (rest.add(args), ...);
+        return [core = core_.get(), & kernel, range, rest = std::move(rest)] {
+            detail::Arguments arguments;
+            core->add_to(arguments);
+            arguments.append(rest);
+            kernel.enqueue(range, arguments);
+        };
+    }
+    Pending<BuildReport> start(std::function<void()> insert, detail::Existing existing) {
+        const auto build = detail::Build::start({core_.get()}, std::move(insert), existing);
+        return {build->enqueue_marker(), [core = core_, build] { return build->finish().front(); }};
+    }
+
     static constexpr std::uint32_t all_nodes = std::numeric_limits<std::uint32_t>::max();
 
     template <class M>

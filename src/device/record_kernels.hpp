@@ -33,6 +33,7 @@ public:
     [[nodiscard]] Kernel& get(std::initializer_list<KernelFile> files, const char* name,
                               unsigned mode, const std::string& definitions = {},
                               const Definitions& types = {});
+    [[nodiscard]] const Definitions& definitions() const { return definitions_; }
     [[nodiscard]] const RecordType& record() const { return definitions_.records.back(); }
     /// Owns the memory of the container that is not of its storage.
     [[nodiscard]] const MemoryOwner& owner() const { return device_; }

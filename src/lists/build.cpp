@@ -55,8 +55,8 @@ void Build::enter(Phase phase) {
             {.phase = phase, .build = phase == Phase::pending ? shared_from_this() : nullptr});
 }
 
-/// Ends the build with the exception under way, or the one given before; all containers are empty
-/// then.
+/// Ends the build with the exception under way, or the one given before. All containers have the
+/// records then that the build keeps, or are empty.
 void Build::fail() noexcept {
     bool without_pool = false;
     if (!error_) {
@@ -73,7 +73,7 @@ void Build::fail() noexcept {
 }
 
 std::shared_ptr<Build> Build::start(std::vector<ListsCore*> containers,
-                                    std::function<void()> insert) {
+                                    std::function<void()> insert, Existing existing) {
     const std::shared_ptr<Build> build(new Build(std::move(containers), std::move(insert)));
     build->require_buildable();
     const auto kept_alive = build->keep_alive();
@@ -83,10 +83,11 @@ std::shared_ptr<Build> Build::start(std::vector<ListsCore*> containers,
         container->release_kept_buffers();
     }
     build->reports_.resize(build->containers_.size());
+    if (existing == Existing::kept)
+        for (ListsCore* container : build->containers_) container->keep_records();
     build->enter(Phase::building);
     try {
-        // Through ContainerStorage: Storage::automatic may change the storage here.
-        for (ListsCore* container : build->containers_) container->storage().start();
+        for (ListsCore* container : build->containers_) container->start_build();
         build->enqueue_passes();
     } catch (...) {
         build->fail();
@@ -126,7 +127,7 @@ void Build::enqueue_passes() {
     bool another = true;
     while (another) {
         ++passes_;
-        for (ListsCore* container : containers_) container->storage().in_use().begin_pass();
+        for (ListsCore* container : containers_) container->begin_pass();
         {
             const Running running(*this);
             insert_();
@@ -202,7 +203,7 @@ bool Build::review() {
     bool complete = true;
     for (std::size_t i = 0; i < containers_.size(); ++i) {
         reports_[i].passes = passes_;
-        if (!containers_[i]->storage().review(reports_[i])) complete = false;
+        if (!containers_[i]->review(reports_[i])) complete = false;
     }
     return complete;
 }

@@ -71,9 +71,11 @@ PendingRead CellScan::read_later(Totals& totals) const {
 }
 
 void CellScan::write_offsets(const cl::Buffer& heads, const cl::Buffer& offsets,
-                             std::uint64_t capacity_nodes) {
+                             std::uint64_t capacity_nodes, const Memory* kept) {
+    const bool keeps = kept != nullptr;
     tile_offsets_.run(tiles_range(tiles_, group_), heads, counts_at_, cells_, sums_.cl(),
-                      static_cast<cl_uint>(capacity_nodes), offsets);
+                      static_cast<cl_uint>(capacity_nodes), keeps ? kept->cl() : heads,
+                      cl_uint{keeps}, offsets);
 }
 
 }  // namespace cellist::detail

@@ -29,9 +29,10 @@ public:
     [[nodiscard]] PendingRead read_later(Totals& totals) const;
     /// Enqueues a write of the offsets of the lists, none over `capacity_nodes`: one for each cell,
     /// and the end of the last list. They may overwrite the counts. Call sum() first, with the same
-    /// counts and no limit.
+    /// counts and no limit. `kept` are the offsets of lists that are part of the counts: where the
+    /// capacity is too small, they keep their lengths, and others lose records.
     void write_offsets(const cl::Buffer& heads, const cl::Buffer& offsets,
-                       std::uint64_t capacity_nodes);
+                       std::uint64_t capacity_nodes, const Memory* kept = nullptr);
 
 private:
     cl_uint group_;  ///< work-items

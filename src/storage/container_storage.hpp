@@ -30,11 +30,13 @@ public:
         return std::exchange(storage_, std::move(other));
     }
 
+    /// Chooses the storage that another container with the same options has chosen.
+    virtual void adopt_choice([[maybe_unused]] const ContainerStorage& other) {}
     /// A build of this container alone that blocks; `run` does all of it. A hook: AutomaticStorage
     /// measures and retries here.
     virtual BuildReport build(const std::function<BuildReport()>& run) { return run(); }
     /// Starts a build in the storage in use.
-    virtual void start() { storage_->start(); }
+    virtual void start() { storage_->start({}); }
     /// As ListStorage::review(), for a build that start() began.
     virtual bool review(BuildReport& report) { return storage_->review(report); }
     /// Whether review() can change the lists.

@@ -1,7 +1,10 @@
 #include "storage/storage.hpp"
 
+#include <algorithm>
 #include <iterator>
 #include <string_view>
+
+#include "cellist_kernels.hpp"
 
 namespace cellist::detail {
 
@@ -61,9 +64,31 @@ void ListStorage::add_to(Arguments& arguments, const Memory& nodes, const Memory
     arguments.add_mode(view.mode);
 }
 
-void ListStorage::start() {
+void ListStorage::start(const Kept& kept) {
     pool_.start_build();
-    expect_nothing();
+    kept_ = kept;
+    mark_.reset();
+    if (kept.records == 0)
+        expect_nothing();
+    else
+        expected_ = std::make_shared<Expected>(*expected_);
+}
+
+bool ListStorage::can_save(const Memory& memory) const {
+    return saved_.size_bytes() == memory.size_bytes() || pool_.has_room_for(memory.size_bytes());
+}
+
+void ListStorage::allocate_saved(const Memory& memory) {
+    if (saved_.size_bytes() != memory.size_bytes())
+        saved_ = Memory(pool_.owner(), memory.size_bytes(), 1, "second copy of the heads");
+}
+
+void ListStorage::copy(const Memory& from, const Memory& to) const {
+    if (from.size_bytes() == 0) return;
+    opencl([&] {
+        pool_.owner()->ordered_queue().enqueueCopyBuffer(from.cl(), to.cl(), 0, 0,
+                                                         from.size_bytes());
+    });
 }
 
 Counters::Sum ListStorage::wait_for_counters() {
@@ -94,8 +119,22 @@ void ListStorage::update(BuildReport& report, std::uint64_t demand, std::uint64_
     report.stored = stored;
     report.dropped = demand - stored;
     report.rejected = rejected;
-    report.attempted = demand + rejected;
+    report.existing = kept_.records;
+    report.attempted = demand + rejected - kept_.records;
     report.capacity_nodes = pool_.capacity_nodes();
+}
+
+void ListStorage::load(const PackedLists& packed, const Memory& offsets,
+                       const CellScan::Totals& totals) {
+    reserve(totals.sum, totals.longest);
+    clear();
+    Arguments arguments;
+    add_to(arguments);
+    add_contiguous_to(arguments, packed.records, packed.offsets);
+    arguments.add(offsets.cl());
+    kernels_.get({{"load.cl", kernels::load_cl}}, "cellist_load", mode() | CELLIST_CONTIGUOUS)
+        .enqueue(Range::padded(std::max(shape_.cells(), pool_.counter_elements())), arguments);
+    expected_ = std::make_shared<Expected>(Expected{totals.sum, totals.hash});
 }
 
 PendingRead ListStorage::find(Findings& findings, Kernel& kernel,

@@ -14,6 +14,7 @@
 
 #include "device/record_kernels.hpp"
 #include "device/view.hpp"
+#include "storage/cell_scan.hpp"
 #include "storage/node_pool.hpp"
 
 namespace cellist::detail {
@@ -26,6 +27,20 @@ public:
 
 /// Whether a kernel may insert into a container.
 enum class Inserts { refused, accepted };
+
+/// A copy of all lists, contiguous and in order.
+struct PackedLists {
+    Memory offsets;  ///< cells + 1
+    Memory records;
+    CellScan::Totals totals;  ///< of the lengths, after the wait for `reading`
+    ReadbackFence reading;
+};
+
+/// What a build keeps.
+struct Kept {
+    std::uint64_t records = 0;        ///< of the lists
+    const Memory* offsets = nullptr;  ///< of their copy; null if the lists stay where they are
+};
 
 /// How a container keeps its nodes: a pool, and the passes of a build. One class a storage.
 ///
@@ -41,8 +56,14 @@ public:
 
     /// A build is start(), then passes until review() says that the lists are complete; see
     /// build.cpp. More passes may follow, where another container needs them: they fill the lists
-    /// anew.
-    virtual void start();
+    /// anew. If the build keeps records, each pass inserts their copy again, unless mark() follows.
+    virtual void start(const Kept& kept);
+    /// Whether mark() works.
+    [[nodiscard]] virtual bool can_mark() { return false; }
+    /// From now on, passes keep the lists as they are now, and insert further records.
+    virtual void mark() {}
+    /// Takes away what was inserted since mark(), and ends it.
+    virtual void return_to_mark() {}
     /// Enqueues what the next run of the kernels needs. Does not block.
     virtual void begin_pass() { clear(); }
     /// Enqueues what follows a run of the kernels, the reading of its counters above all. True if
@@ -52,6 +73,11 @@ public:
     /// options. True if the lists are complete. Throws OverflowError; the caller empties the lists
     /// then. Blocks.
     virtual bool review(BuildReport& report) = 0;
+    /// Records that found no node in the last pass. Blocks.
+    [[nodiscard]] std::uint64_t dropped() { return wait_for_counters().dropped; }
+    [[nodiscard]] const Kept& kept() const { return kept_; }
+    /// The copy of the kept records is there now; see Kept.
+    void set_kept_offsets(const Memory& offsets) { kept_.offsets = &offsets; }
     /// Whether a review can change the lists.
     [[nodiscard]] bool may_grow() const { return options_.overflow != Overflow::drop; }
 
@@ -63,6 +89,11 @@ public:
     /// Empties the lists after a failed build and resets the passes. If the pool grows, it starts
     /// at 0 nodes when it has none or when `without_pool` is true.
     void recover(bool without_pool);
+
+    /// Replaces all lists by those of a copy, in their order. `offsets` says where they go if they
+    /// are contiguous; with the offsets of the copy, all of its records. `totals` are those of the
+    /// new lengths. Throws OverflowError.
+    void load(const PackedLists& copy, const Memory& offsets, const CellScan::Totals& totals);
 
     /// Enqueues a check for links, offsets and counts that are inconsistent, or differ from those
     /// of the last build. Does not block. Call the result once, when that build is finished; that
@@ -143,6 +174,12 @@ protected:
         std::uint64_t stored = 0;
         std::uint64_t counts_hash = 0;
     };
+    /// Whether `saved_` is as large as this memory, or there is room for it.
+    [[nodiscard]] bool can_save(const Memory& memory) const;
+    /// Makes `saved_` as large as this memory.
+    void allocate_saved(const Memory& memory);
+    /// Enqueues a copy.
+    void copy(const Memory& from, const Memory& to) const;
     /// Nothing is in the lists any more, and a build may follow.
     void expect_nothing() { expected_ = std::make_shared<Expected>(); }
 
@@ -166,6 +203,9 @@ protected:
     /// The mode, and what a storage knows of its slots and keys. view() adds the rest.
     cellist_view view_;
     Slice slice_;
+    Kept kept_;                     ///< by this build
+    std::optional<Expected> mark_;  ///< what mark() found; none without a mark
+    Memory saved_;                  ///< what changes after mark(); stays for the next one
     std::shared_ptr<Expected> expected_ = std::make_shared<Expected>();  ///< of the last build
     Counters counters_;                                                  ///< of the last pass
     ReadbackFence reading_;  ///< what a review waits for: the last reading of the pass

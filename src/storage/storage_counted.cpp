@@ -52,8 +52,8 @@ void CountedStorage::set_partitions(std::unique_ptr<Partitions> partitions) {
     pool_.set_replaceable_bytes(partitions_ ? partitions_->plan().bytes() : 0);
 }
 
-void CountedStorage::start() {
-    ListStorage::start();
+void CountedStorage::start(const Kept& kept) {
+    ListStorage::start(kept);
     counted_ = false;
     if (partitions_ && partitions_->plan().records >= capacity_nodes()) return;
     set_partitions(nullptr);
@@ -98,6 +98,7 @@ bool CountedStorage::end_pass() {
         // Nothing has changed the offsets yet, so they are compared with themselves.
         reading_.add(find(filled_, pool_.heads()));
         reading_.add(pool_.read(counters_));
+        if (kept_.records > 0 && options_.overflow == Overflow::drop) trim_counts();
         return false;
     }
     scan_.sum(pool_.heads().cl(), CELLIST_NONE);
@@ -105,9 +106,19 @@ bool CountedStorage::end_pass() {
     reading_.add(pool_.read(counting_));
     if (options_.overflow != Overflow::drop) return false;
     // The pool is what it is: no need to look at the counts first.
-    scan_.write_offsets(pool_.heads().cl(), pool_.heads().cl(), capacity_nodes());
+    scan_.write_offsets(pool_.heads().cl(), pool_.heads().cl(), capacity_nodes(), kept_.offsets);
     counted_ = true;
     return true;
+}
+
+/// Makes the counts the lengths of the lists. An append that drops does not drop from the last
+/// lists alone, so a validation could not tell the offsets from the counts.
+void CountedStorage::trim_counts() {
+    Arguments arguments;
+    ListStorage::add_to(arguments);
+    kernels_.get({{"append.cl", kernels::append_cl}}, "cellist_trim_counts", view_.mode)
+        .enqueue(Range::padded(shape_.cells()), arguments);
+    clear_words(0, 0, 0);
 }
 
 /// A kernel of regions.cl.
@@ -224,8 +235,9 @@ bool CountedStorage::review(BuildReport& report) {
     if (unfilled > 0 || filled.dropped != demand - kept || filled.rejected != counting.rejected)
         throw UnrepeatableError(
             "the kernel inserted " +
-            std::to_string(kept - unfilled + filled.dropped + filled.rejected) +
-            " records when it filled the lists, and " + std::to_string(demand + counting.rejected) +
+            std::to_string(kept - unfilled + filled.dropped + filled.rejected - kept_.records) +
+            " records when it filled the lists, and " +
+            std::to_string(demand + counting.rejected - kept_.records) +
             " or others when it counted them: it must insert the same records every time, "
             "or use Storage::linked");
     return true;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "storage/cell_scan.hpp"
 #include "storage/partitions.hpp"
 #include "storage/storage.hpp"
 
@@ -12,7 +11,7 @@ class CountedStorage final : public ListStorage {
 public:
     CountedStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options);
     void clear() override;
-    void start() override;
+    void start(const Kept& kept) override;
     void begin_pass() override;
     bool end_pass() override;
     bool review(BuildReport& report) override;
@@ -34,6 +33,7 @@ private:
     void plan_regions();
     void move_from_partitions();
     void move_from_regions();
+    void trim_counts();
     bool review_partitions(BuildReport& report);
     void make_room(const BuildReport& report);
     PendingRead find(Findings& findings, const Memory& offsets);

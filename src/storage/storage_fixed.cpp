@@ -1,7 +1,6 @@
 #include <algorithm>
 
 #include "cellist_kernels.hpp"
-#include "storage/cell_scan.hpp"
 #include "storage/storage.hpp"
 
 namespace cellist::detail {
@@ -13,6 +12,10 @@ class FixedStorage final : public ListStorage {
 public:
     FixedStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options);
     void clear() override;
+    bool can_mark() override { return can_save(pool_.heads()); }
+    void mark() override;
+    void return_to_mark() override;
+    void begin_pass() override;
     bool end_pass() override;
     bool review(BuildReport& report) override;
     std::function<Validation()> validate() override;
@@ -23,6 +26,7 @@ public:
 
 private:
     void reset_passes() override;
+    void rewind();
 
     /// Replaces the pool by one for `slots`; `allocate` takes its number of nodes. There are no
     /// slots if it throws.
@@ -64,6 +68,38 @@ void FixedStorage::clear() {
     expect_nothing();
 }
 
+/// Inserts change only counts. Those of dropped records do not stay.
+void FixedStorage::mark() {
+    allocate_saved(pool_.heads());
+    copy(pool_.heads(), saved_);
+    Arguments arguments;
+    add_to(arguments, pool_.nodes(), saved_, view(Inserts::refused));
+    kernels_.get({{"append.cl", kernels::append_cl}}, "cellist_trim_counts", mode())
+        .enqueue(Range::padded(shape_.cells()), arguments);
+    mark_ = *expected_;
+}
+
+void FixedStorage::rewind() {
+    copy(saved_, pool_.heads());
+    clear_words(0, 0, 0);
+}
+
+void FixedStorage::return_to_mark() {
+    rewind();
+    scan_.sum(pool_.heads().cl(), CELLIST_NONE);
+    CellScan::Totals totals;
+    ReadbackFence reading;
+    reading.add(scan_.read_later(totals));
+    reading.wait();
+    expected_ = std::make_shared<Expected>(Expected{mark_->stored, totals.hash});
+    mark_.reset();
+}
+
+void FixedStorage::begin_pass() {
+    if (!mark_) return clear();
+    rewind();
+}
+
 bool FixedStorage::end_pass() {
     scan_.sum(pool_.heads().cl(), view_.slots);
     reading_.add(scan_.read_later(in_slots_));
@@ -89,7 +125,12 @@ bool FixedStorage::review(BuildReport& report) {
                                 std::to_string(slice_.cells) +
                                 " cells are too many (use Storage::linked or counted): " + *reason,
                             report);
-    set_slots(longest, [&](std::uint64_t nodes) { pool_.grow(nodes, report); });
+    // More appends may follow: each would move all records again.
+    const std::uint64_t roomy = view_.slots + view_.slots / 2;
+    const bool grows_by_half =
+        kept_.records > 0 && roomy > longest && !pool_.refusal(nodes_with(roomy));
+    set_slots(grows_by_half ? roomy : longest,
+              [&](std::uint64_t nodes) { pool_.grow(nodes, report); });
     return false;
 }
 

@@ -12,9 +12,19 @@ class LinkedStorage final : public ListStorage {
 public:
     LinkedStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options);
     void clear() override;
+    bool can_mark() override { return can_save(pool_.counters()); }
+    void mark() override;
+    void return_to_mark() override;
+    void begin_pass() override;
     bool end_pass() override;
     bool review(BuildReport& report) override;
     std::function<Validation()> validate() override;
+
+private:
+    void run(const char* name, const Range& range);
+    void rewind();
+
+    bool inserted_ = false;  ///< since mark()
 };
 
 constexpr std::uint64_t default_capacity_nodes = 65536;
@@ -40,6 +50,39 @@ void LinkedStorage::clear() {
     expect_nothing();
 }
 
+/// Inserts change only heads and counters, and the counters say which nodes are older.
+void LinkedStorage::mark() {
+    allocate_saved(pool_.counters());
+    inserted_ = false;
+    mark_ = *expected_;
+}
+
+/// Runs a kernel of append.cl that takes the saved counters.
+void LinkedStorage::run(const char* name, const Range& range) {
+    Arguments arguments;
+    add_to(arguments);
+    arguments.add(saved_.cl());
+    kernels_.get({{"append.cl", kernels::append_cl}}, name, mode()).enqueue(range, arguments);
+}
+
+void LinkedStorage::rewind() {
+    run("cellist_rewind_heads", Range::padded(shape_.cells()));
+    copy(saved_, pool_.counters());
+}
+
+void LinkedStorage::return_to_mark() {
+    if (inserted_) rewind();
+    expected_ = std::make_shared<Expected>(*mark_);
+    mark_.reset();
+}
+
+void LinkedStorage::begin_pass() {
+    if (!mark_) return clear();
+    if (inserted_) rewind();
+    run("cellist_save_counters", Range::padded(pool_.counter_elements()));
+    inserted_ = true;
+}
+
 bool LinkedStorage::end_pass() {
     reading_.add(pool_.read(counters_));
     return false;
@@ -52,7 +95,10 @@ bool LinkedStorage::review(BuildReport& report) {
 
     const std::uint64_t demand = counters.allocated + counters.dropped;
     pool_.require(demand, report);
-    pool_.grow(demand, report);
+    // More appends may follow: each would move all records again.
+    const std::uint64_t roomy = capacity_nodes() + capacity_nodes() / 2;
+    pool_.grow(kept_.records > 0 && roomy > demand && !pool_.refusal(roomy) ? roomy : demand,
+               report);
     return false;
 }
 

@@ -1,7 +1,6 @@
 #include <algorithm>
 
 #include "cellist_kernels.hpp"
-#include "storage/cell_scan.hpp"
 #include "storage/storage.hpp"
 
 namespace cellist::detail {
@@ -15,7 +14,7 @@ class NearestStorage final : public ListStorage {
 public:
     NearestStorage(RecordKernels& kernels, const Shape& shape, const ListsOptions& options);
     void clear() override;
-    void start() override;
+    void start(const Kept& kept) override;
     void begin_pass() override;
     bool end_pass() override;
     bool review(BuildReport& report) override;
@@ -34,7 +33,7 @@ private:
     CellScan scan_;
     bool selecting_ = false;   ///< the next pass fills the slots
     Counters threshold_pass_;  ///< its counters
-    CellScan::Totals kept_;
+    CellScan::Totals in_slots_;
     cellist_selection selection_{};
     Memory selection_memory_;
 };
@@ -80,8 +79,8 @@ void NearestStorage::clear() {
     expect_nothing();
 }
 
-void NearestStorage::start() {
-    ListStorage::start();
+void NearestStorage::start(const Kept& kept) {
+    ListStorage::start(kept);
     selecting_ = false;
     view_.threshold_words = 0;
     pool_.fill_heads(view_.slots, row(CELLIST_ROW_REMAINING), shape_.cells());
@@ -146,22 +145,22 @@ bool NearestStorage::end_pass() {
     view_.mode = CELLIST_FIXED;
     reading_.add(selection_memory_.read_later(&selection_, sizeof selection_));
     scan_.sum(pool_.heads().cl(), view_.slots);
-    reading_.add(scan_.read_later(kept_));
+    reading_.add(scan_.read_later(in_slots_));
     reading_.add(pool_.read(counters_));
     return false;
 }
 
 bool NearestStorage::review(BuildReport& report) {
     const Counters::Sum selected = wait_for_counters();
-    update(report, selected, kept_.sum);
-    expected_->counts_hash = kept_.hash;
+    update(report, selected, in_slots_.sum);
+    expected_->counts_hash = in_slots_.hash;
     const Counters::Sum compared = threshold_pass_.sum();
     const std::uint64_t compared_records = compared.dropped + compared.rejected;
     if (selection_.unrepeated > 0 || compared.rejected != selected.rejected ||
-        compared_records != report.attempted)
+        compared_records != report.attempted + kept_.records)
         throw UnrepeatableError("the kernel inserted " + std::to_string(report.attempted) +
                                 " records when it filled the slots, and " +
-                                std::to_string(compared_records) +
+                                std::to_string(compared_records - kept_.records) +
                                 " or different ones when it compared them: it must insert the same "
                                 "records every time, or use "
                                 "another storage than nearest()");

@@ -42,7 +42,12 @@ void AutomaticStorage::use(Storage storage) {
 
 void AutomaticStorage::start() {
     if (!in_slices_) use(tuner_.storage());
-    storage_->start();
+    storage_->start({});
+}
+
+void AutomaticStorage::adopt_choice(const ContainerStorage& other) {
+    tuner_ = dynamic_cast<const AutomaticStorage&>(other).tuner_;
+    use(other.in_use().kind());
 }
 
 /// Excludes the storage in use from the choice, and starts the build anew in another. False if
@@ -52,8 +57,9 @@ bool AutomaticStorage::replace(const BuildReport& report, const char* why,
     const std::optional<Storage> other = tuner_.exclude(storage_->kind(), why, exclusion);
     if (!other) return false;
     tuner_.expect(report.stored + report.dropped);
+    const Kept kept = storage_->kept();
     use(*other);
-    storage_->start();
+    storage_->start(kept);
     return true;
 }
 

@@ -16,6 +16,7 @@ public:
     /// Measures the build if the tuner asks for it. Where a driver finds no memory, another storage
     /// tries.
     BuildReport build(const std::function<BuildReport()>& run) override;
+    void adopt_choice(const ContainerStorage& other) override;
     void start() override;
     /// Where the storage in use fails and another may not, that takes its place. The lists are not
     /// complete then.

@@ -88,6 +88,12 @@ std::size_t use(const cellist::Device& device) {
     hits.sort_by_async("record.depth");
     photons.sort(&Photon::power);
 
+    sum += hits.append(kernel, 7, cl_uint{3}).stored;
+    sum += hits.append_async(kernel, Range::padded(7), cl_uint{3}).get().stored;
+    sum += hits.append([] {}).existing + hits.append_async([] {}).get().stored;
+    sum += hits.merge(hits.copy()).stored + hits.remove_if("record.id > most", {{"most", 7U}});
+    sum += hits.device_lengths().size() + hits.device_offsets().size() +
+           hits.device_histogram(8).size();
     sum += hits.lengths().total + hits.lengths_async().get().longest;
     sum += hits.download().records().size() + hits.download_async().get()[{1, 2}].size();
     sum += hits.pack().records.size() + hits.pack(&Hit::next).records.size() +

@@ -160,6 +160,76 @@ void build_and_stop(Scene& scene) {
                                           : *scene.options.capacity_nodes));
 }
 
+/// Runs `change`, which keeps the records if it fails. If bringing them back fails as well, the
+/// lists are empty.
+void change_full_lists(Scene& scene, const auto& change) {
+    {
+        const faults::Pause pause;
+        scene.build();
+        // Compiles what brings the records back.
+        (void)scene.lists.copy();
+    }
+    try {
+        change();
+    } catch (const OpenClError&) {
+        const faults::Pause pause;
+        if (faults::failures().size() > 1 && scene.lists.lengths().total == 0)
+            scene.lists_hold = Contents::empty;
+        throw;
+    }
+    const faults::Pause pause;
+    scene.build();
+}
+
+void require_twice(const Scene& scene, const BuildReport& report) {
+    const faults::Pause pause;
+    REQUIRE(report.existing == scene.oracle.size());
+    REQUIRE(report.attempted == insert_count);
+    REQUIRE(report.stored == 2 * scene.oracle.size());
+    require_sound(scene.lists.validate());
+    Oracle<Item> oracle = scene.oracle;
+    oracle.insert(scene.oracle.begin(), scene.oracle.end());
+    require_same(scene.lists.download(), oracle);
+}
+
+void append(Scene& scene) {
+    change_full_lists(scene, [&] {
+        require_twice(scene, scene.lists.append(scene.insert, insert_range(), scene.cells,
+                                                scene.records, insert_count));
+    });
+}
+
+void append_later(Scene& scene) {
+    change_full_lists(scene, [&] {
+        Pending<BuildReport> pending = scene.lists.append_async(
+            scene.insert, insert_range(), scene.cells, scene.records, insert_count);
+        require_twice(scene, pending.get());
+    });
+}
+
+void merge(Scene& scene) {
+    change_full_lists(scene, [&] {
+        require_twice(scene, [&] {
+            const Lists<Item> copy = scene.lists.copy();
+            BuildReport report = scene.lists.merge(copy);
+            report.attempted += insert_count - scene.oracle.size();
+            return report;
+        }());
+    });
+}
+
+void remove(Scene& scene) {
+    change_full_lists(scene, [&] {
+        const std::uint64_t removed = scene.lists.remove_if("record.id & 1");
+        const faults::Pause pause;
+        Oracle<Item> left = scene.oracle;
+        REQUIRE(removed ==
+                std::erase_if(left, [](const auto& entry) { return (entry.second.id & 1) != 0; }));
+        require_sound(scene.lists.validate());
+        require_same(scene.lists.download(), left);
+    });
+}
+
 void build_slices(Scene& scene) {
     scene.lists_hold = Contents::empty;
     Oracle<Item> found;
@@ -216,6 +286,14 @@ std::span<const Operation> build_operations() {
          Overflow::grow},
         {"build by a kernel on another queue", empty, build_by_another_queue, repeated,
          Room::enough, Overflow::grow},
+        {"append", full, append},
+        {"append with room", full, append, repeated},
+        {"append to lists that grow", full, append, first, Room::too_little},
+        {"append that may drop", full, append, repeated, Room::enough, Overflow::drop},
+        {"append that may stop", full, append, repeated, Room::enough, Overflow::stop},
+        {"append later", full, append_later, repeated},
+        {"merge a copy", full, merge, repeated},
+        {"remove records", full, remove, repeated},
         {"build slices", empty, build_slices, repeated, Room::for_a_part, Overflow::grow},
     };
     return table;

@@ -172,6 +172,8 @@ kernel void insert(CELLIST_LISTS(Item, lists))
         (void)lists.lengths();
         (void)lists.download();
         (void)lists.pack();
+        lists.append(insert, 20'000);
+        REQUIRE(lists.remove_if("record.id & 1u") == 20'000);
         REQUIRE(lists.validate().ok());
     };
     CELLIST_EACH_STORAGE(storage);

@@ -1,11 +1,24 @@
 // What reads lists.
 #include "checks.hpp"
+#include "layer.hpp"
 #include "operations.hpp"
 
 namespace cellist::test {
 namespace {
 
 void lengths(Scene& scene) { require_lengths(scene.lists.lengths(), scene.oracle); }
+void lengths_on_device(Scene& scene) {
+    const Buffer<cl_uint> lengths = scene.lists.device_lengths();
+    const Buffer<cl_uint> offsets = scene.lists.device_offsets();
+    const Buffer<cl_uint> histogram = scene.lists.device_histogram(2);
+    const std::vector<cl_uint> found = lengths.download();
+    for (cl_uint cell = 0; cell < cell_count; ++cell) {
+        REQUIRE(found[cell] == scene.oracle.count(cell));
+    }
+    const faults::Pause pause;
+    REQUIRE(offsets.download().back() == scene.oracle.size());
+    REQUIRE(histogram.download()[1] == scene.lists.lengths().nonempty_cells);
+}
 void pack(Scene& scene) { require_packed(scene.lists.pack(), scene.oracle); }
 void pack_a_member(Scene& scene) { require_packed_ids(scene.lists.pack(&Item::id), scene.oracle); }
 void download(Scene& scene) { require_same(scene.lists.download(), scene.oracle); }
@@ -44,6 +57,7 @@ std::span<const Operation> read_operations() {
     using enum Use;
     static constexpr Operation table[] = {
         {"lengths", full, lengths},
+        {"lengths on the device", full, lengths_on_device},
         {"pack", full, pack, repeated},
         {"pack a member", full, pack_a_member, repeated},
         {"download", full, download},

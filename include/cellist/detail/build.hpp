@@ -13,19 +13,23 @@
 
 namespace cellist::detail {
 
+/// What happens to the records that are in the containers before a build.
+enum class Existing { cleared, kept };
+
 /// A build of one or more containers: passes over the user's kernels until every container is
 /// complete. start() enqueues the passes that need no look at the counters; finish() does the rest.
 class Build : public std::enable_shared_from_this<Build> {
 public:
     /// Enqueues the first passes: `insert` runs the kernels that fill the containers. Throws what
-    /// `insert` throws; the containers are empty then. Throws Error if the containers cannot be
-    /// built together. Does not block.
+    /// `insert` throws; the containers have their existing records then, or are empty. Throws Error
+    /// if the containers cannot be built together. Does not block.
     [[nodiscard]] static std::shared_ptr<Build> start(std::vector<ListsCore*> containers,
-                                                      std::function<void()> insert);
+                                                      std::function<void()> insert,
+                                                      Existing existing = Existing::cleared);
     /// Completes when everything has that was enqueued so far. The build has failed if this throws.
     [[nodiscard]] cl::Event enqueue_marker();
     /// The reports, after all passes. Throws the same every time if the build failed; the
-    /// containers are empty then. Blocks.
+    /// containers have their existing records then, or are empty. Blocks.
     const std::vector<BuildReport>& finish();
     /// Ends a pending build of containers that are about to go. Blocks.
     void abandon() noexcept;

@@ -23,6 +23,7 @@ class CellScan;
 class ContainerStorage;
 class ListSorter;
 class ListStorage;
+struct PackedLists;
 class RecordKernels;
 
 /// What lists are sorted by.
@@ -40,7 +41,7 @@ enum class Phase {
     building,  ///< kernels insert, or the build reviews what they inserted
     pending,   ///< the kernels are enqueued, and Build::finish() reviews what they inserted
     slicing,   ///< the lists of a slice are complete, and the caller reads them
-    failed,    ///< the lists are in no order; ListsCore::make_ready() empties them
+    failed,    ///< the lists are in no order; ListsCore::make_ready() empties or restores them
 };
 
 /// The phase of a container, and what the phase needs.
@@ -68,6 +69,16 @@ public:
     BuildReport build_slices(const std::function<void()>& insert,
                              const std::function<void(const Slice&)>& read);
 
+    /// A build that keeps the records. Blocks.
+    BuildReport append(const std::function<void()>& insert);
+    /// Appends the records of other lists. Blocks.
+    BuildReport merge(const ListsCore& other);
+    /// A container with the same options and the same lists.
+    [[nodiscard]] std::shared_ptr<ListsCore> copy() const;
+    /// Removes the records for which an OpenCL C expression of `record` is not 0. Returns their
+    /// number. Blocks.
+    std::uint64_t remove_if(const std::string& expression, const Values& values);
+
     void clear();
     /// Sorts at least the first `top_k` nodes of each list.
     cl::Event sort(const SortKey& key, std::uint32_t top_k);
@@ -76,6 +87,13 @@ public:
 
     /// Enqueues the reading of every list's length; `lengths` has them when it has arrived.
     [[nodiscard]] PendingRead read_lengths(std::vector<cl_uint>& lengths) const;
+    /// Enqueues the writing of every list's length: one word a cell.
+    void write_lengths(const cl::Buffer& lengths) const;
+    /// Enqueues the writing of where each list begins if all lists are contiguous: cells + 1 words.
+    void write_offsets(const cl::Buffer& offsets) const;
+    /// Enqueues the counting of the cells by the length of their list; the last bin also has all
+    /// longer ones. The bins are 0 before.
+    void write_histogram(const cl::Buffer& histogram, cl_uint bins) const;
 
     /// Enqueues the reading of all lists: cells + 1 offsets, and the records. `allocate` takes the
     /// most records that there can be, and returns where they go. Blocks where there are too many
@@ -132,19 +150,32 @@ public:
     [[nodiscard]] ListSorter& sorter();
 
     // For Build.
-    void enter(BuildState state) { state_ = std::move(state); }
-    /// The lists are failed, and empty if the device still works. `without_pool` gives the memory
-    /// of the nodes back; the next build grows anew.
+    void enter(BuildState state);
+    /// The next start_build() keeps the records. Nothing has changed if the build fails before.
+    void keep_records();
+    void start_build();
+    void begin_pass();
+    [[nodiscard]] bool review(BuildReport& report);
+    /// The lists are failed. If the device still works, they get the records back that an append
+    /// keeps, or are empty. `without_pool` gives the memory of the nodes back; the next build grows
+    /// anew.
     void fail(bool without_pool) noexcept;
 
 private:
+    struct Append;
+
     /// Throws Error if no Lists object refers to the built container any more, because the function
     /// that inserts has replaced it.
     static void require_owner(const std::shared_ptr<ListsCore>& self);
-    [[nodiscard]] Memory device_lengths(std::uint64_t words) const;
+    [[nodiscard]] Range cell_range() const;
     [[nodiscard]] std::uint64_t most_records() const;
-    [[nodiscard]] Memory device_offsets() const;
-    void gather(std::uint64_t begin, std::uint64_t end, const Memory& offsets,
+    [[nodiscard]] CellScan& scan(std::unique_ptr<CellScan>& once) const;
+    void enqueue_lengths(const cl::Buffer& lengths) const;
+    void enqueue_offsets(CellScan& scan, const cl::Buffer& offsets) const;
+    [[nodiscard]] std::unique_ptr<PackedLists> packed() const;
+    void insert_from(const PackedLists& lists);
+    void restore(bool without_pool) const;
+    void gather(std::uint64_t begin, std::uint64_t end, const cl::Buffer& offsets,
                 const cl::Buffer& values, const std::string& declaration,
                 const std::string& member) const;
     [[nodiscard]] std::vector<cl_uint> count(const std::function<void()>& insert,
@@ -159,11 +190,13 @@ private:
 
     MemoryOwner device_;
     Shape shape_;
+    ListsOptions options_;
     mutable BuildState state_;
     std::unique_ptr<RecordKernels> kernels_;
     std::unique_ptr<ContainerStorage> storage_;
     mutable std::unique_ptr<CellScan> scan_;
     std::unique_ptr<ListSorter> sorter_;
+    mutable std::unique_ptr<Append> append_;  ///< that a build or a failure has not ended
 };
 
 }  // namespace cellist::detail

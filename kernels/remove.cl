@@ -1,0 +1,26 @@
+// Divides contiguous lists by a predicate: the records that stay move to the begin of their list, in
+// order, and those that go follow in any order.
+//
+//   lengths   cells   out: the records that stay
+//
+// One work-item a cell; the range is padded to whole work-groups. The host defines cellist_values
+// and cellist_sort_key; the key of a record is odd if the record is to go.
+#include <cellist/lists.clh>
+
+kernel void cellist_remove(CELLIST_LISTS(CELLIST_RECORD, lists), global uint* lengths,
+                           const cellist_values values) {
+    const uint cell = get_global_id(0);
+    if (cell >= cellist_cells(lists)) return;
+    const uint first = cellist_begin(lists_heads, cellist_view_of(lists), cell);
+    uint end = first;
+    cellist_for_each(lists, cell, node) {
+        if (cellist_sort_key(&cellist_get(lists, node), values) & 1u) continue;
+        if (end != node) {
+            const struct CELLIST_RECORD stays = cellist_get(lists, node);
+            cellist_get(lists, node) = cellist_get(lists, end);
+            cellist_get(lists, end) = stays;
+        }
+        ++end;
+    }
+    lengths[cell] = end - first;
+}
