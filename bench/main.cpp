@@ -175,6 +175,7 @@ int main(int argc, char** argv) try {
     add_ceilings(suite);
     add_insert(suite);
     add_build(suite);
+    add_append(suite);
     add_read(suite);
     add_storage(suite);
     add_sort(suite);

@@ -79,6 +79,13 @@ public:
         return lists.build([&] { run_insert(lists); });
     }
 
+    /// Adds the first `nodes` records once more. Blocks.
+    cellist::BuildReport append(cellist::Lists<Record>& lists, cl_uint nodes) {
+        return lists.append([&] {
+            insert_->run(cellist::Range::padded(nodes), lists, workload_.distribution.id, nodes);
+        });
+    }
+
     /// Fills the lists again. Returns the device time of each run of the inserting kernel.
     [[nodiscard]] std::vector<double> insert_seconds(cellist::Lists<Record>& lists) {
         std::vector<cl::Event> events;

@@ -88,6 +88,7 @@ private:
 
 void add_insert(Suite& suite);
 void add_build(Suite& suite);
+void add_append(Suite& suite);
 void add_read(Suite& suite);
 void add_sort(Suite& suite);
 void add_storage(Suite& suite);
