@@ -55,7 +55,7 @@ TEST_CASE("dimensions that a shape does not have are of one cell") {
 }
 
 TEST_CASE("a shape that cannot be indexed is refused, naming the value and the limit") {
-    const auto message = [](std::initializer_list<std::uint64_t> extents) {
+    const auto message = [](std::initializer_list<detail::Extent> extents) {
         return std::string(error_of([&] { Shape shape(extents); }).what());
     };
     REQUIRE(contains(message({0x80000000u}), "2147483648"));
@@ -87,6 +87,26 @@ TEST_CASE("a shape knows its extents and cells") {
     REQUIRE_THROWS_AS(shape.cell({4, 0, 0}), Error);
     REQUIRE_THROWS_AS(shape.cell({0, 0, 0, 0}), Error);
     REQUIRE_THROWS_AS((Shape{0, 3}.cell({})), Error);
+}
+
+TEST_CASE("extents and coordinates are integers of any type, and not negative") {
+    int width = 4;
+    const short height = 3;
+    const std::uint64_t depth = 2;
+    REQUIRE(Shape{width, height, depth} == Shape{4u, 3u, 2u});
+    const Lists<Item> lists(device(), {width, height});
+    REQUIRE(lists.shape().cells() == 12);
+    REQUIRE(lists.shape().cell({width - 1, height - 1}) == 11);
+    REQUIRE(lists.download()[{width - 1, height - 1}].empty());
+    width = -4;
+    const auto of_extent = error_of([&] { Shape{width, height}; });
+    INFO(of_extent.what());
+    REQUIRE(contains(of_extent.what(), "-4 is negative"));
+    REQUIRE_THROWS_AS(Lists<Item>(device(), {height, width}), Error);
+    REQUIRE_THROWS_AS(lists.shape().cell({0, -1}), Error);
+    REQUIRE_THROWS_AS(lists.download()[{-1}], Error);
+    REQUIRE_THROWS_AS(Shape{std::int64_t{-1}}, Error);
+    REQUIRE_THROWS_AS(Shape{std::numeric_limits<std::int64_t>::min()}, Error);
 }
 
 TEST_CASE("a demand over the device's limit ends in an error and leaves the lists usable") {

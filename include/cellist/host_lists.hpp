@@ -24,10 +24,10 @@ public:
     /// Returns the records of the cell at a position. Missing coordinates are 0, as on the device.
     /// Throws Error if the position is outside the shape.
     [[nodiscard]] std::span<const T> operator[](
-        std::initializer_list<std::uint64_t> position) const& {
+        std::initializer_list<detail::Extent> position) const& {
         return cell(shape_.cell(position));
     }
-    [[nodiscard]] std::vector<T> operator[](std::initializer_list<std::uint64_t> position) && {
+    [[nodiscard]] std::vector<T> operator[](std::initializer_list<detail::Extent> position) && {
         return std::move(*this).cell(shape_.cell(position));
     }
 

@@ -4,8 +4,8 @@
 #include <concepts>
 #include <cstddef>
 #include <string>
-#include <utility>
 
+#include <cellist/detail/extent.hpp>
 #include <cellist/error.hpp>
 
 namespace cellist {
@@ -41,16 +41,7 @@ struct Range {
     }
 
 private:
-    /// One extent of a range, from any type of integer.
-    struct Extent {
-        std::size_t value;
-        Extent(std::integral auto extent)  // NOLINT(google-explicit-constructor)
-            : value(static_cast<std::size_t>(extent)) {
-            if (std::cmp_less(extent, 0))
-                throw Error("a range of " + std::to_string(extent) + " work-items is negative");
-        }
-    };
-    Range(std::size_t count, const std::array<Extent, 3>& extents)
+    Range(std::size_t count, const std::array<detail::Extent, 3>& extents)
         : global{extents[0].value, extents[1].value, extents[2].value}, dimensions(count) {}
 };
 

@@ -6,6 +6,8 @@
 #include <initializer_list>
 #include <string>
 
+#include <cellist/detail/extent.hpp>
+
 namespace cellist {
 
 /// The extents of the cells: 1 to 4 dimensions, x fastest. If an extent is 0, there are no cells,
@@ -17,9 +19,9 @@ public:
     /// The largest number of cells.
     static constexpr std::uint64_t cells_max = 0xFFFF'FFFE;
 
-    /// Throws Error unless there are 1 to 4 extents, each at most `extent_max`, with a product of
-    /// at most `cells_max`.
-    Shape(std::initializer_list<std::uint64_t> extents);
+    /// Takes integers of any type, e.g. `Shape{width, height}`. Throws Error unless there are 1 to
+    /// 4 extents, each from 0 to `extent_max`, with a product of at most `cells_max`.
+    Shape(std::initializer_list<detail::Extent> extents);
 
     [[nodiscard]] std::size_t dimensions() const { return dimensions_; }
     /// Returns the extent of a dimension, or 1 if the shape does not have that dimension.
@@ -30,7 +32,7 @@ public:
 
     /// Returns the index of the cell at a position. Missing coordinates are 0. Throws Error if the
     /// position has more coordinates than the shape has dimensions, or if it is outside the shape.
-    [[nodiscard]] std::uint64_t cell(std::initializer_list<std::uint64_t> position) const;
+    [[nodiscard]] std::uint64_t cell(std::initializer_list<detail::Extent> position) const;
 
     /// Returns the extents as text, e.g. "1280x720".
     [[nodiscard]] std::string to_string() const;

@@ -3,12 +3,12 @@
 
 namespace cellist {
 
-Shape::Shape(std::initializer_list<std::uint64_t> extents) : dimensions_(extents.size()) {
+Shape::Shape(std::initializer_list<detail::Extent> extents) : dimensions_(extents.size()) {
     if (extents.size() == 0 || extents.size() > extents_.size())
         throw Error("a shape of " + std::to_string(extents.size()) +
                     " dimensions: shapes have 1 to 4");
     std::size_t dimension = 0;
-    for (const std::uint64_t extent : extents) {
+    for (const auto [extent] : extents) {
         if (extent > extent_max)
             throw Error("extent " + std::to_string(extent) + " of dimension " +
                         std::to_string(dimension) + " exceeds the limit of " +
@@ -29,14 +29,14 @@ Shape::Shape(std::initializer_list<std::uint64_t> extents) : dimensions_(extents
     }
 }
 
-std::uint64_t Shape::cell(std::initializer_list<std::uint64_t> position) const {
+std::uint64_t Shape::cell(std::initializer_list<detail::Extent> position) const {
     if (position.size() > dimensions_)
         throw Error("a position of " + std::to_string(position.size()) +
                     " coordinates in a shape of " + to_string());
     std::uint64_t index = 0;
     std::uint64_t stride = 1;
     std::size_t dimension = 0;
-    for (const std::uint64_t coordinate : position) {
+    for (const auto [coordinate] : position) {
         if (coordinate >= extents_[dimension])
             throw Error("coordinate " + std::to_string(coordinate) + " of dimension " +
                         std::to_string(dimension) + " is outside of the shape " + to_string());

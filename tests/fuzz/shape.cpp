@@ -43,7 +43,7 @@ Numbers take_numbers(Input& input) {
 /// Calls with the numbers as an initializer list, which is all that a Shape takes.
 template <class Call>
 auto with_list(const Numbers& n, Call&& call) {
-    using List = std::initializer_list<std::uint64_t>;
+    using List = std::initializer_list<detail::Extent>;
     switch (n.size()) {
         case 0:
             return call(List{});
