@@ -59,6 +59,49 @@ TEST_CASE("reads of one buffer at several moments are kept apart, whoever asks f
     }
 }
 
+TEST_CASE("a part of a buffer is written and read, blocking and not") {
+    constexpr std::size_t size = 10'000;
+    std::vector<cl_uint> expected(size);
+    for (std::size_t i = 0; i < size; ++i) expected[i] = static_cast<cl_uint>(i);
+    Buffer<cl_uint> buffer(device(), size);
+    buffer.upload(expected);
+    REQUIRE(buffer.download() == expected);
+    for (const std::size_t first : {std::size_t{0}, std::size_t{1}, std::size_t{77}, size - 7})
+        for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{7}}) {
+            const std::vector<cl_uint> part(count, static_cast<cl_uint>(first * 31 + count));
+            if (count % 2 == 0)
+                buffer.upload_async(part, first).wait();
+            else
+                buffer.upload(part, first);
+            std::copy(part.begin(), part.end(),
+                      expected.begin() + static_cast<std::ptrdiff_t>(first));
+            REQUIRE(buffer.download(first, count) == part);
+            REQUIRE(buffer.download_async(first, count).get() == part);
+            REQUIRE(buffer.download() == expected);
+        }
+    // More than one block of the memory through which small reads go.
+    const auto most = expected.begin() + 9;
+    REQUIRE(buffer.download(9, size - 9) == std::vector<cl_uint>(most, expected.end()));
+    REQUIRE(buffer.download_async(9, size - 9).get() == std::vector<cl_uint>(most, expected.end()));
+    REQUIRE(buffer.download(size, 0).empty());
+}
+
+TEST_CASE("a part that a buffer does not have is refused, naming the part and the size") {
+    Buffer<cl_uint> buffer(device(), 100);
+    const std::vector<cl_uint> elements(3);
+    for (const std::size_t first : {std::size_t{98}, std::size_t{101}, ~std::size_t{0}}) {
+        const auto error = error_of([&] { buffer.upload(elements, first); });
+        INFO(error.what());
+        REQUIRE(contains(error.what(), "100"));
+        REQUIRE(contains(error.what(), std::to_string(first)));
+        REQUIRE_THROWS_AS(buffer.upload_async(elements, first), Error);
+        REQUIRE_THROWS_AS(buffer.download(first, 3), Error);
+        REQUIRE_THROWS_AS(buffer.download_async(first, 3), Error);
+    }
+    REQUIRE_THROWS_AS(buffer.download(1, ~std::size_t{0}), Error);
+    REQUIRE_THROWS_AS(buffer.upload(std::vector<cl_uint>(101)), Error);
+}
+
 TEST_CASE("an empty buffer is a kernel argument") {
     Kernel kernel(device(),
                   "kernel void count(global const uint* in, uint size, global uint* out) "

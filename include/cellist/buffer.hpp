@@ -43,34 +43,48 @@ public:
 
     /// Returns a copy of the elements, after all work that was enqueued before. Throws MemoryError
     /// if the host has no memory for it. Blocks.
-    [[nodiscard]] std::vector<T> download() const {
-        std::vector<T> elements = detail::host_memory<T>(size());
-        memory_.read(elements.data(), elements.size() * sizeof(T));
+    [[nodiscard]] std::vector<T> download() const { return download(0, size()); }
+    /// Returns a copy of `count` elements, from the element `first` on. Throws Error if the buffer
+    /// ends before. Otherwise like download().
+    [[nodiscard]] std::vector<T> download(std::size_t first, std::size_t count) const {
+        require_inside(first, count);
+        std::vector<T> elements = detail::host_memory<T>(count);
+        memory_.read(elements.data(), count * sizeof(T), first * sizeof(T));
         return elements;
     }
 
     /// Like download(), but does not block.
     [[nodiscard]] Pending<std::vector<T>> download_async() const {
+        return download_async(0, size());
+    }
+    [[nodiscard]] Pending<std::vector<T>> download_async(std::size_t first,
+                                                         std::size_t count) const {
+        require_inside(first, count);
         struct State {
             std::vector<T> elements;
             detail::ReadbackFence done;
         };
         const auto state = std::make_shared<State>();
-        state->elements = detail::host_memory<T>(size());
-        state->done.add(memory_.read_later(state->elements.data(), size() * sizeof(T)));
+        state->elements = detail::host_memory<T>(count);
+        state->done.add(
+            memory_.read_later(state->elements.data(), count * sizeof(T), first * sizeof(T)));
         return {state->done.event(), [state] {
                     state->done.wait();
                     return std::move(state->elements);
                 }};
     }
 
-    /// Copies `elements` to the start of the buffer. Keep them unchanged until the event completes.
-    /// Throws Error if there are more than size(). Does not block.
-    cl::Event upload_async(std::span<const T> elements) {
-        if (elements.size() > size())
-            throw Error("a buffer of " + std::to_string(size()) + " elements has no room for " +
-                        std::to_string(elements.size()));
-        return memory_.write_later(elements.data(), elements.size_bytes());
+    /// Copies `elements` to the buffer, from the element `first` on, after all work that was
+    /// enqueued before. Throws Error if the buffer ends before. Blocks until the copy is complete.
+    void upload(std::span<const T> elements, std::size_t first = 0) {
+        require_inside(first, elements.size());
+        memory_.write(elements.data(), elements.size_bytes(), first * sizeof(T));
+    }
+
+    /// Like upload(), but does not block. Keep the elements unchanged until the event completes.
+    cl::Event upload_async(std::span<const T> elements, std::size_t first = 0) {
+        require_inside(first, elements.size());
+        return memory_.write_later(elements.data(), elements.size_bytes(), first * sizeof(T));
     }
 
     /// Sets every element to `value`. Does not block if sizeof(T) is a power of two up to 128. For
@@ -93,6 +107,13 @@ public:
     }
 
 private:
+    void require_inside(std::size_t first, std::size_t count) const {
+        if (first > size() || count > size() - first)
+            throw Error("a buffer of " + std::to_string(size()) + " elements has no " +
+                        std::to_string(count) + " elements from element " + std::to_string(first) +
+                        " on");
+    }
+
     detail::Memory memory_;
 };
 

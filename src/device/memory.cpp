@@ -33,23 +33,25 @@ Memory::Memory(std::shared_ptr<DeviceState> state, std::uint64_t count, std::siz
     });
 }
 
-void Memory::write(const void* source, std::size_t bytes) {
+void Memory::write(const void* source, std::size_t bytes, std::uint64_t at_byte) {
     if (bytes == 0) return;
-    opencl([&] { state_->ordered_queue().enqueueWriteBuffer(buffer_, CL_TRUE, 0, bytes, source); });
+    opencl([&] {
+        state_->ordered_queue().enqueueWriteBuffer(buffer_, CL_TRUE, at_byte, bytes, source);
+    });
 }
 
-void Memory::read(void* target, std::size_t bytes) const {
+void Memory::read(void* target, std::size_t bytes, std::uint64_t from_byte) const {
     ReadbackFence fence;
-    fence.add(read_later(target, bytes));
+    fence.add(read_later(target, bytes, from_byte));
     fence.wait();
 }
 
-cl::Event Memory::write_later(const void* source, std::size_t bytes) {
+cl::Event Memory::write_later(const void* source, std::size_t bytes, std::uint64_t at_byte) {
     if (bytes == 0) return state_->enqueue_marker();
     return opencl([&] {
         cl::Event event;
-        state_->ordered_queue().enqueueWriteBuffer(buffer_, CL_FALSE, 0, bytes, source, nullptr,
-                                                   &event);
+        state_->ordered_queue().enqueueWriteBuffer(buffer_, CL_FALSE, at_byte, bytes, source,
+                                                   nullptr, &event);
         return event;
     });
 }

@@ -1,4 +1,6 @@
 // Operations on objects other than lists, and on empty lists.
+#include <span>
+
 #include "checks.hpp"
 #include "operations.hpp"
 
@@ -19,6 +21,9 @@ void use_buffers(Scene& scene) {
     buffer.fill({2.0f, 5});
     found = buffer.download_async().get();
     REQUIRE(found == std::vector<Item>(insert_count, {2.0f, 5}));
+    buffer.upload(std::span(scene.inserts.records).first(1), 2);
+    found = buffer.download(2, 1);
+    REQUIRE(found[0] == scene.inserts.records[0]);
     buffer.upload_async(scene.inserts.records);
     scene.device.finish();
     found = buffer.download();

@@ -79,12 +79,12 @@ public:
     [[nodiscard]] std::uint64_t size_bytes() const { return size_bytes_; }
 
     /// Copies from the host. Blocks.
-    void write(const void* source, std::size_t bytes);
+    void write(const void* source, std::size_t bytes, std::uint64_t at_byte = 0);
     /// Copies to the host. Blocks.
-    void read(void* target, std::size_t bytes) const;
+    void read(void* target, std::size_t bytes, std::uint64_t from_byte = 0) const;
     /// The same without blocking. `source` stays until the event has completed, `target` until the
     /// reading has arrived.
-    cl::Event write_later(const void* source, std::size_t bytes);
+    cl::Event write_later(const void* source, std::size_t bytes, std::uint64_t at_byte = 0);
     [[nodiscard]] PendingRead read_later(void* target, std::size_t bytes,
                                          std::uint64_t from_byte = 0) const;
     /// Repeats a pattern over the first `bytes`. If the pattern's size is not a power of two up to
