@@ -97,5 +97,31 @@ TEST_CASE("records of odd sizes round-trip without links") {
     round_trip<Hundred>(100, 100, storage);
 }
 
+TEST_CASE("a record may be a compound literal, or any expression of the struct", "[oclgrind]") {
+    CELLIST_EACH_STORAGE(storage);
+    Lists<Item> lists(device(), {3}, {.storage = storage});
+    Kernel insert(device(), R"(
+#include <cellist/lists.clh>
+Item item_of(uint i) { return (Item){(float)i, i + 100u}; }
+kernel void insert(CELLIST_LISTS(Item, lists), uint unused)
+{
+    const uint i = get_global_id(0);
+    int stored = cellist_insert(lists, 0, (Item){(float)i, i});
+    if (stored) cellist_insert(lists, 1, item_of(i));
+    const Item left = {1.0f, 2u}, right = {3.0f, 4u};
+    stored = cellist_insert(lists, 2, i % 2u == 0u ? left : right), stored += 1;
+}
+)",
+                  "insert", lists);
+    require_complete(lists.build(insert, 50, cl_uint{0}), 150);
+    lists.sort(&Item::id);
+    const HostLists<Item> found = lists.download();
+    for (cl_uint i = 0; i < 50; ++i) {
+        REQUIRE(found.cell(0)[i] == Item{static_cast<cl_float>(i), i});
+        REQUIRE(found.cell(1)[i] == Item{static_cast<cl_float>(i), i + 100});
+        REQUIRE(found.cell(2)[i] == (i < 25 ? Item{1.0f, 2} : Item{3.0f, 4}));
+    }
+}
+
 }  // namespace
 }  // namespace cellist::test

@@ -49,6 +49,9 @@ TEST_CASE("records of another struct are inserted and copied nowhere", "[oclgrin
             REQUIRE(contains(what, "struct Item'"));
             REQUIRE(contains(what, name));
         }
+    // A position where a cell is expected.
+    (void)error_of_line("Item item; cellist_insert(lists, 1, 2, item);");
+    REQUIRE(contains(error_of_line("cellist_insert(lists, 0, (Swapped){1, 2});"), "struct Item'"));
     const std::string number = error_of_line("cellist_insert(lists, 0, 1.0f);");
     REQUIRE(contains(number, "'float'"));
     REQUIRE(contains(number, "struct Item'"));
