@@ -199,7 +199,9 @@ void ListsCore::pack(const cl::Buffer& offsets,
                      const std::function<const cl::Buffer&(std::uint64_t)>& allocate,
                      const std::string& declaration, const std::string& member) const {
     write_offsets(offsets);
-    gather(0, shape_.cells(), offsets, allocate(most_records()), declaration, member);
+    // Whole records are copied by the program of downloads.
+    gather(0, shape_.cells(), offsets, allocate(most_records()),
+           member.empty() ? record_declaration(*kernels_) : declaration, member);
 }
 
 }  // namespace cellist::detail
