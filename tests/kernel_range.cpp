@@ -67,8 +67,40 @@ TEST_CASE("an impossible work-group is an error and leaves the kernel usable") {
     INFO(error.what());
     REQUIRE(error.call() == "clEnqueueNDRangeKernel");
     REQUIRE(contains(error.what(), "CL_INVALID_WORK_GROUP_SIZE"));
+    REQUIRE(contains(error.what(),
+                     "the work-groups of 1073741824 work-items exceed the limit of " +
+                         std::to_string(kernel.cl().getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(
+                             device().queue().getInfo<CL_QUEUE_DEVICE>()))));
+    REQUIRE(contains(error.what(), "kernel visit"));
     kernel.run(100, visits, cl_uint{100});
     device().finish();
+}
+
+TEST_CASE("the message of a bad work-group names its size and what it does not fit") {
+    const std::string header = "kernel __attribute__((reqd_work_group_size(16, 1, 1))) ";
+    Kernel any(device(), visit_source, "visit");
+    Kernel exact(device(), header + "void f(global uint* out) { *out = 1; }", "f");
+    const Buffer<cl_uint> visits(device(), 200);
+    const auto message = [&](Kernel& launched, const Range& range, const auto&... arguments) {
+        const auto error = error_of<OpenClError>([&] { launched.run(range, arguments...); });
+        return std::string(error.what());
+    };
+    const cl_uint size = 100;
+    Range range(100);
+    range.local = {32, 0, 0};
+    REQUIRE(contains(message(any, range, visits, size),
+                     "the work-groups of 32 work-items do not divide the range of 100: see "
+                     "Range::padded"));
+    range.local = {std::size_t{1} << 30, 0, 0};
+    REQUIRE(contains(message(any, range, visits, size), "exceed the limit of"));
+    Range plane(8, 9);
+    plane.local = {8, 2, 1};
+    REQUIRE(contains(message(any, plane, visits, size),
+                     "of 8x2 work-items do not divide the range of 8x9"));
+    REQUIRE(contains(message(exact, Range::padded(64, 32), visits),
+                     "of 32 work-items are not the 16 that kernel f requires"));
+    REQUIRE(contains(message(exact, Range(100), visits),
+                     "kernel f requires work-groups of 16, which do not divide the range of 100"));
 }
 
 TEST_CASE("a range that cannot be is refused, naming it") {

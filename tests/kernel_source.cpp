@@ -129,6 +129,17 @@ TEST_CASE("an unknown kernel name is an error") {
     const auto error = error_of([&] { Kernel(device(), insert_one, "insert_two", lists); });
     INFO(error.what());
     REQUIRE(contains(error.what(), "CL_INVALID_KERNEL_NAME"));
+    REQUIRE(contains(error.what(), "has no kernel called 'insert_two'"));
+    REQUIRE(contains(error.what(), "its kernels: insert_one"));
+    const auto of_two = error_of([] {
+        Kernel(device(), "kernel void first(uint x) {} kernel void second(uint x) {}", "third");
+    });
+    INFO(of_two.what());
+    const bool in_order = contains(of_two.what(), "its kernels: first, second");
+    REQUIRE((in_order || contains(of_two.what(), "its kernels: second, first")));
+    const auto of_none = error_of([] { Kernel(device(), "int f(int x) { return x; }", "f"); });
+    INFO(of_none.what());
+    REQUIRE(contains(of_none.what(), "'f'"));
 }
 
 TEST_CASE("options reach the compiler") {

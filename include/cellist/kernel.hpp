@@ -80,6 +80,10 @@ public:
     }
 
     [[nodiscard]] const std::string& name() const;
+    /// Returns the OpenCL kernel, as compiled for the containers that the constructor named. run()
+    /// sets all of its arguments. A build may use other kernels of the same source. The reference
+    /// is valid as long as the Kernel. Does not block.
+    [[nodiscard]] const cl::Kernel& cl() const;
 
     /// @private
     Kernel(std::shared_ptr<detail::DeviceState> device, const Source& code, const std::string& name,

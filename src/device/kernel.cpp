@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <span>
@@ -178,8 +179,13 @@ cl::Kernel kernel_called(const cl::Program& program, const std::string& name,
         return {program, name.c_str()};
     } catch (const cl::Error& error) {
         if (error.err() != CL_INVALID_KERNEL_NAME) throw;
+        std::string known = opencl([&] { return program.getInfo<CL_PROGRAM_KERNEL_NAMES>(); });
+        known.resize(std::min(known.size(), known.find('\0')));
+        for (std::size_t at = 0; (at = known.find(';', at)) != std::string::npos; at += 2)
+            known.replace(at, 1, ", ");
         throw OpenClError(error.what(), error.err(),
-                          source.file_name + " has no kernel called '" + name + "'");
+                          source.file_name + " has no kernel called '" + name + "'; " +
+                              (known.empty() ? "it has no kernels" : "its kernels: " + known));
     }
 }
 
@@ -211,6 +217,42 @@ void check_local_memory(const detail::DeviceState& device, const std::string& na
                     std::to_string(device.info.local_memory_bytes));
 }
 
+/// Why a launch fails with an error code, if its work-group is the cause.
+std::string work_group_fault(const detail::DeviceState& device, const std::string& name,
+                             const Variant& variant, const Range& range) {
+    const auto text = [&](const std::array<std::size_t, 3>& extents) {
+        std::string all = std::to_string(extents[0]);
+        for (std::size_t i = 1; i < range.dimensions; ++i) all += "x" + std::to_string(extents[i]);
+        return all;
+    };
+    const std::array<std::size_t, 3>& local = range.local;
+    const std::array<std::size_t, 3>& required = variant.required_work_group;
+    const auto end = local.begin() + static_cast<std::ptrdiff_t>(range.dimensions);
+    const std::size_t items =
+        std::accumulate(local.begin(), end, std::size_t{1}, std::multiplies<std::size_t>());
+    const std::string begin = "the work-groups of " + text(local) + " work-items ";
+    if (local[0] == 0)
+        return required[0] == 0 ? ""
+                                : "kernel " + name + " requires work-groups of " + text(required) +
+                                      ", which do not divide the range of " + text(range.global);
+    if (required[0] != 0 && !std::equal(local.begin(), end, required.begin()))
+        return begin + "are not the " + text(required) + " that kernel " + name + " requires";
+    if (items > variant.work_group_limit)
+        return begin + "exceed the limit of " + std::to_string(variant.work_group_limit) +
+               " work-items that kernel " + name + " has on " + device.info.name;
+    for (std::size_t i = 0; i < range.dimensions; ++i)
+        if (range.global[i] % local[i] != 0)
+            return begin + "do not divide the range of " + text(range.global) +
+                   ": see Range::padded";
+    const auto most =
+        opencl([&] { return device.device.getInfo<CL_DEVICE_MAX_WORK_ITEM_SIZES>(); });
+    for (std::size_t i = 0; i < std::min(range.dimensions, most.size()); ++i)
+        if (local[i] > most[i])
+            return begin + "exceed the limit of " + std::to_string(most[i]) +
+                   " work-items in dimension " + std::to_string(i);
+    return {};
+}
+
 }  // namespace
 
 struct Kernel::Impl {
@@ -237,19 +279,22 @@ struct Kernel::Impl {
         });
     }
 
-    void launch(Variant& variant, const Range& range, cl::Event* event) const {
-        opencl([&] {
-            const cl::CommandQueue& queue = device->ordered_queue();
-            const auto& extents = range.global;
-            if (std::find(extents.begin(), extents.end(), 0u) != extents.end()) {
-                if (event != nullptr) queue.enqueueMarkerWithWaitList(nullptr, event);
-            } else {
-                queue.enqueueNDRangeKernel(
-                    variant.kernel, cl::NullRange, nd_range(range.global, range.dimensions),
-                    work_group(range, variant.required_work_group, variant.work_group_limit),
-                    nullptr, event);
-            }
-        });
+    void launch(Variant& variant, const Range& range, cl::Event* event) const try {
+        const cl::CommandQueue& queue = device->ordered_queue();
+        const auto& extents = range.global;
+        if (std::find(extents.begin(), extents.end(), 0u) != extents.end()) {
+            if (event != nullptr) queue.enqueueMarkerWithWaitList(nullptr, event);
+        } else {
+            queue.enqueueNDRangeKernel(
+                variant.kernel, cl::NullRange, nd_range(range.global, range.dimensions),
+                work_group(range, variant.required_work_group, variant.work_group_limit), nullptr,
+                event);
+        }
+    } catch (const cl::Error& error) {
+        const bool by_size =
+            error.err() == CL_INVALID_WORK_GROUP_SIZE || error.err() == CL_INVALID_WORK_ITEM_SIZE;
+        throw OpenClError(error.what(), error.err(),
+                          by_size ? work_group_fault(*device, name, variant, range) : "");
     }
 
     /// The kernel for containers of these modes; compiles it the first time.
@@ -283,6 +328,7 @@ Kernel& Kernel::operator=(Kernel&&) noexcept = default;
 Kernel::~Kernel() = default;
 
 const std::string& Kernel::name() const { return impl_->name; }
+const cl::Kernel& Kernel::cl() const { return impl_->variants.at(impl_->definitions.modes).kernel; }
 
 void Kernel::enqueue(const Range& range, const Arguments& arguments, cl::Event* event) {
     Variant& variant =
