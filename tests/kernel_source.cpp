@@ -142,6 +142,18 @@ TEST_CASE("an unknown kernel name is an error") {
     REQUIRE(contains(of_none.what(), "'f'"));
 }
 
+TEST_CASE("a kernel gives its OpenCL kernel and the log of its build") {
+    const Kernel silent(device(), "kernel void f(uint x, global uint* out) { *out = x; }", "f");
+    REQUIRE(silent.log().empty());
+    REQUIRE(silent.cl().getInfo<CL_KERNEL_NUM_ARGS>() == 2);
+    const Source source{.text = "// a line\n#warning look here\nkernel void g(uint x) {}",
+                        .file_name = "warns.cl"};
+    const Kernel warns(device(), source, "g");
+    INFO(warns.log());
+    REQUIRE(contains(warns.log(), "warns.cl:2:"));
+    REQUIRE(contains(warns.log(), "look here"));
+}
+
 TEST_CASE("options reach the compiler") {
     const Buffer<cl_uint> out(device(), 1);
     const std::string text = "kernel void answer(global uint* out) { *out = ANSWER; }";

@@ -17,6 +17,7 @@
 cmake_minimum_required(VERSION 3.25)
 
 set(ENV{CELLIST_DEVICE} "Oclgrind")
+set(ENV{CELLIST_PROGRAM_CACHE} "off")
 execute_process(
     COMMAND "${oclgrind}" --data-races --check-api --max-errors 100000
         --build-options -cl-opt-disable --log "${log}"

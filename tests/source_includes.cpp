@@ -68,8 +68,8 @@ TEST_CASE("every way to include a file is known") {
 TEST_CASE("sources without files of their own are built once") {
     const auto programs = [](const Source& source) {
         const auto& state = device().state();
-        return std::pair(state->program(source.text, source.options)(),
-                         state->program(source.text, source.options)());
+        return std::pair(state->programs.get(source.text, source.options).program(),
+                         state->programs.get(source.text, source.options).program());
     };
     const auto [first, again] =
         programs({.text = "kernel void f(global uint* out) { *out = 1234567; }"});

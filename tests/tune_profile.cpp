@@ -1,14 +1,13 @@
 // The file in which `cellist tune` keeps what it measured: whatever else stands in its place counts
 // as none.
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <random>
 
 #include <sys/stat.h>
 
 #include "device/profile.hpp"
+#include "support/cache.hpp"
 #include "support/errors.hpp"
 #include "support/inserts.hpp"
 
@@ -18,47 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 using detail::Pattern;
 using detail::Profile;
-
-/// An environment variable that has its old value back at the end.
-class Variable {
-public:
-    Variable(const char* name, const char* value) : name_(name) {
-        if (const char* old = std::getenv(name)) old_ = old;
-        set(value);
-    }
-    ~Variable() { set(old_ ? old_->c_str() : nullptr); }
-    Variable(const Variable&) = delete;
-    Variable& operator=(const Variable&) = delete;
-
-private:
-    void set(const char* value) {
-        if (value != nullptr)
-            setenv(name_, value, 1);
-        else
-            unsetenv(name_);
-    }
-    const char* name_;
-    std::optional<std::string> old_;
-};
-
-/// An empty directory that is the user's cache directory for as long as it lives.
-class CacheDirectory {
-public:
-    CacheDirectory()
-        : path(fs::temp_directory_path() /
-               ("cellist-test-" + std::to_string(std::random_device{}()))),
-          variable_("XDG_CACHE_HOME", path.c_str()) {
-        fs::create_directories(path);
-    }
-    ~CacheDirectory() { fs::remove_all(path); }
-    CacheDirectory(const CacheDirectory&) = delete;
-    CacheDirectory& operator=(const CacheDirectory&) = delete;
-
-    const fs::path path;
-
-private:
-    Variable variable_;
-};
 
 DeviceInfo some_device() {
     DeviceInfo info;

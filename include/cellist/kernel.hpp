@@ -26,9 +26,10 @@ struct Source {
 /// A kernel from the user's source, built for a device. Movable, not copyable. Using a moved-from
 /// Kernel throws Error.
 ///
-/// A device caches the last 128 programs, by source, types and options. It does not cache a source
-/// that includes the user's own files, by a directive or by the option "-include". Each Kernel
-/// compiles such a source again from the current files. `#include <cellist/lists.clh>` and
+/// A device caches the last 128 programs, by source, types and options, and files in the user's
+/// cache directory keep more of them: see Device::prepare and docs/devices.md. Neither keeps a
+/// source that includes the user's own files, by a directive or by the option "-include". Each
+/// Kernel compiles such a source again from the current files. `#include <cellist/lists.clh>` and
 /// `<cellist/glm.clh>` need no path and do not prevent caching.
 class Kernel {
 public:
@@ -84,6 +85,10 @@ public:
     /// sets all of its arguments. A build may use other kernels of the same source. The reference
     /// is valid as long as the Kernel. Does not block.
     [[nodiscard]] const cl::Kernel& cl() const;
+    /// Returns the compiler's log of the same kernel's program, with the line numbers of the user's
+    /// source. Empty if there are no warnings. Throws OpenClError if the driver fails. Does not
+    /// block.
+    [[nodiscard]] std::string log() const;
 
     /// @private
     Kernel(std::shared_ptr<detail::DeviceState> device, const Source& code, const std::string& name,

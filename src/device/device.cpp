@@ -1,15 +1,12 @@
 #include <algorithm>
-#include <atomic>
 #include <cctype>
 #include <charconv>
 #include <cstdlib>
-#include <random>
 #include <utility>
 
 #include <cellist/device.hpp>
 
 #include "device/device_state.hpp"
-#include "device/program_text.hpp"
 
 namespace cellist {
 
@@ -96,15 +93,6 @@ std::string lower(std::string_view text) {
     return out;
 }
 
-/// Empty where there is none to be had.
-std::string build_log(const cl::Program& program, const cl::Device& device) {
-    try {
-        return trimmed(program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device));
-    } catch (const cl::Error&) {
-        return {};
-    }
-}
-
 constexpr const char* no_device =
     "no OpenCL device found: install a driver, or PoCL for the CPU (pocl-opencl-icd)";
 
@@ -167,9 +155,8 @@ Device::Device(cl::Context context, cl::CommandQueue queue)
                      (queue_info<cl_command_queue_properties>(queue, CL_QUEUE_PROPERTIES) &
                       CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0;
                  cl::Device device(queue_info<cl_device_id>(queue, CL_QUEUE_DEVICE), true);
-                 return std::make_shared<detail::DeviceState>(std::move(context), std::move(queue),
-                                                              std::move(device), out_of_order,
-                                                              false);
+                 return std::make_shared<detail::DeviceState>(
+                     std::move(context), std::move(queue), std::move(device), out_of_order, false);
              })) {}
 
 Device::Device(Device&&) noexcept = default;
@@ -210,7 +197,8 @@ DeviceState::DeviceState(cl::Context its_context, cl::CommandQueue its_queue, cl
       out_of_order(is_out_of_order),
       owns_queue(owns_its_queue),
       max_constant_bytes(device.getInfo<CL_DEVICE_MAX_CONSTANT_BUFFER_SIZE>()),
-      staging(std::make_shared<PinnedStaging>(context, queue)) {}
+      staging(std::make_shared<PinnedStaging>(context, queue)),
+      programs(context, device, info) {}
 
 // Not by the bindings, which throw. A failure is of no use to anybody any more.
 DeviceState::~DeviceState() {
@@ -233,37 +221,6 @@ cl::Event DeviceState::enqueue_marker() const {
 const std::optional<Profile>& DeviceState::profile() {
     std::call_once(profile_once_, [&] { profile_ = load_profile(info); });
     return profile_;
-}
-
-std::size_t DeviceState::programs_kept() {
-    const std::lock_guard lock(mutex_);
-    return programs_.size();
-}
-
-cl::Program DeviceState::program(const std::string& source, const std::string& options) {
-    const std::string key = options + '\0' + source;
-    const std::lock_guard lock(mutex_);
-    if (const cl::Program* known = programs_.find(key)) return opencl([&] { return *known; });
-    if (includes_files(source, options)) {
-        // Drivers cache programs as well, and some ignore included files: no text is used twice.
-        static std::atomic<std::uint64_t> count = std::random_device{}();
-        return build_program(source + "\n// " + std::to_string(++count) + "\n", options);
-    }
-    return opencl([&] { return programs_.add(key, build_program(source, options)); });
-}
-
-cl::Program DeviceState::build_program(const std::string& source,
-                                       const std::string& options) const {
-    return opencl([&] {
-        cl::Program program(context, source);
-        // Not by the bindings, which ask for the log of every build, and where that fails, throw
-        // that.
-        const cl_int code =
-            clBuildProgram(program(), 1, &device(), options.c_str(), nullptr, nullptr);
-        if (code != CL_SUCCESS)
-            throw OpenClError("clBuildProgram", code, build_log(program, device));
-        return program;
-    });
 }
 
 }  // namespace detail

@@ -5,14 +5,13 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <string>
 
 #include <cellist/device.hpp>
 #include <cellist/error.hpp>
 
 #include "device/pinned_staging.hpp"
 #include "device/profile.hpp"
-#include "device/recent.hpp"
+#include "device/programs.hpp"
 
 namespace cellist::detail {
 
@@ -34,33 +33,19 @@ struct DeviceState {
     bool owns_queue;                   ///< nobody else has made it
     std::uint64_t max_constant_bytes;  ///< of a buffer in constant memory
     std::shared_ptr<PinnedStaging> staging;
+    Programs programs;
 
     /// The queue, for one command that starts after all that were enqueued before.
     const cl::CommandQueue& ordered_queue() const;
     /// Completes when all that was enqueued has.
     [[nodiscard]] cl::Event enqueue_marker() const;
 
-    /// The program with this source and these options. Builds it unless it is among the last ones.
-    /// Always builds it if the source or the options include other files, which may have changed.
-    /// Throws OpenClError with the compiler's log. Any thread may call it.
-    cl::Program program(const std::string& source, const std::string& options);
-
     /// What `cellist tune` has stored of the device. Read the first time; any thread may call it.
     const std::optional<Profile>& profile();
 
-    /// Programs that are kept. One takes about 1 MB of the host under PoCL.
-    static constexpr std::size_t programs_max = 128;
-    /// How many are kept now. Any thread may call it.
-    [[nodiscard]] std::size_t programs_kept();
-
 private:
-    [[nodiscard]] cl::Program build_program(const std::string& source,
-                                            const std::string& options) const;
-
-    std::mutex mutex_;
     std::once_flag profile_once_;
     std::optional<Profile> profile_;
-    Recent<std::string, cl::Program> programs_{programs_max};  ///< by options and source
 };
 
 /// Throws OpenClError if a call of the C interface has failed.

@@ -126,15 +126,16 @@ std::string macro_hint(const std::string& options, const detail::Definitions& de
     return hint;
 }
 
-cl::Program compile(detail::DeviceState& device, const Source& source,
-                    const detail::Definitions& definitions, cl_uint modes) {
+detail::Program compile(detail::DeviceState& device, const Source& source,
+                        const detail::Definitions& definitions, cl_uint modes) {
     if (source.text.empty()) throw Error("the source of " + source.file_name + " is empty");
     if (definitions.needs_fp64 && !device.info.fp64)
         throw Error("a struct has members of type double, which " + device.info.name +
                     " does not support");
     const ProgramText whole = whole_source(source, definitions, modes, device.info);
     try {
-        return device.program(whole.text(), "-cl-std=CL1.2 -cl-kernel-arg-info " + source.options);
+        return device.programs.get(whole.text(),
+                                   "-cl-std=CL1.2 -cl-kernel-arg-info " + source.options);
     } catch (const OpenClError& error) {
         const std::string log = whole.in_parts(error.log());
         const auto known = [&](const std::string& name) {
@@ -198,6 +199,7 @@ std::size_t written(const auto& list) {
 
 /// The kernel, compiled for containers of some modes.
 struct Variant {
+    detail::Program program;
     cl::Kernel kernel;
     std::vector<Parameter> parameters;
     std::size_t work_group_limit = 0;
@@ -300,10 +302,11 @@ struct Kernel::Impl {
     /// The kernel for containers of these modes; compiles it the first time.
     Variant& variant(cl_uint modes) {
         if (const auto known = variants.find(modes); known != variants.end()) return known->second;
-        const cl::Program program = compile(*device, source, definitions, modes);
+        detail::Program program = compile(*device, source, definitions, modes);
         return opencl([&]() -> Variant& {
             Variant made;
-            made.kernel = kernel_called(program, name, source);
+            made.kernel = kernel_called(program.program, name, source);
+            made.program = std::move(program);
             made.parameters = parameters_of(made.kernel, definitions);
             made.work_group_limit =
                 made.kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device->device);
@@ -329,6 +332,14 @@ Kernel::~Kernel() = default;
 
 const std::string& Kernel::name() const { return impl_->name; }
 const cl::Kernel& Kernel::cl() const { return impl_->variants.at(impl_->definitions.modes).kernel; }
+
+std::string Kernel::log() const {
+    const Impl& own = *impl_;
+    const cl_uint modes = own.definitions.modes;
+    const std::string log = own.variants.at(modes).program.log(own.device->device);
+    if (log.empty()) return log;
+    return whole_source(own.source, own.definitions, modes, own.device->info).in_parts(log);
+}
 
 void Kernel::enqueue(const Range& range, const Arguments& arguments, cl::Event* event) {
     Variant& variant =

@@ -1,15 +1,13 @@
 #include "device/profile.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
-#include <random>
 #include <system_error>
 
 #include <cellist/error.hpp>
+
+#include "device/cache_files.hpp"
 
 namespace cellist::detail {
 
@@ -49,12 +47,6 @@ bool take(std::string_view& text, std::uint64_t& number, std::uint64_t most) {
     if (error != std::errc() || number == 0 || number > most) return false;
     text.remove_prefix(static_cast<std::size_t>(end - text.data()));
     return true;
-}
-
-std::optional<fs::path> absolute_path_in(const char* variable) {
-    const char* value = std::getenv(variable);
-    if (value == nullptr || !fs::path(value).is_absolute()) return {};
-    return value;
 }
 
 }  // namespace
@@ -99,56 +91,23 @@ std::optional<Profile> parse_profile(const DeviceInfo& device, std::string_view 
 }
 
 fs::path profile_path(const DeviceInfo& device) {
-    std::optional<fs::path> cache = absolute_path_in("XDG_CACHE_HOME");
-    if (!cache)
-        if (const auto home = absolute_path_in("HOME")) cache = *home / ".cache";
-    if (!cache)
-        throw Error("there is no cache directory: set XDG_CACHE_HOME or HOME to an absolute path");
     std::string name = device.name + "-" + device.platform + "-" + device.driver;
     for (char& c : name) {
         const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
                            (c >= '0' && c <= '9') || c == '.' || c == '-';
         if (!plain) c = '_';
     }
-    return *cache / "cellist" / (name.substr(0, 200) + ".profile");
+    return cache_folder() / (name.substr(0, 200) + ".profile");
 }
 
 std::optional<Profile> load_profile(const DeviceInfo& device) {
     try {
-        const fs::path path = profile_path(device);
-        // Nothing that blocks or has no end, such as a pipe or a device.
-        if (!fs::is_regular_file(path) || fs::file_size(path) > size_max) return {};
-        std::ifstream file(path, std::ios::binary);
-        std::string text(size_max, '\0');
-        file.read(text.data(), static_cast<std::streamsize>(text.size()));
-        text.resize(static_cast<std::size_t>(file.gcount()));
-        return parse_profile(device, text);
+        const auto text = read_file(profile_path(device), size_max);
+        return text ? parse_profile(device, *text) : std::nullopt;
     } catch (const Error&) {
-        return {};
-    } catch (const fs::filesystem_error&) {
         return {};
     }
 }
-
-namespace {
-
-/// A new file in the folder of the profile, under another name, so that a reader sees either the
-/// old profile or the new one.
-fs::path write_unfinished(const fs::path& path, const std::string& text) {
-    fs::path unfinished = path;
-    unfinished += "." + std::to_string(std::random_device{}());
-    errno = 0;
-    std::ofstream file(unfinished, std::ios::binary);
-    file << text;
-    file.close();
-    if (file.good()) return unfinished;
-    const std::error_code error(errno != 0 ? errno : EIO, std::generic_category());
-    std::error_code ignored;
-    fs::remove(unfinished, ignored);
-    throw Error("cannot write " + path.string() + ": " + error.message());
-}
-
-}  // namespace
 
 fs::path prepare_profile(const DeviceInfo& device) {
     fs::path path = profile_path(device);
@@ -165,14 +124,7 @@ fs::path prepare_profile(const DeviceInfo& device) {
 }
 
 void save_profile(const DeviceInfo& device, const Profile& profile) {
-    const fs::path path = prepare_profile(device);
-    const fs::path unfinished = write_unfinished(path, profile_text(device, profile));
-    std::error_code error;
-    fs::rename(unfinished, path, error);
-    if (!error) return;
-    std::error_code ignored;
-    fs::remove(unfinished, ignored);
-    throw Error("cannot write " + path.string() + ": " + error.message());
+    replace_file(prepare_profile(device), profile_text(device, profile));
 }
 
 }  // namespace cellist::detail

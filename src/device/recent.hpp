@@ -37,6 +37,9 @@ public:
         return values_.front().second;
     }
     [[nodiscard]] std::size_t size() const { return values_.size(); }
+    /// Keys and values, the last used first.
+    [[nodiscard]] auto begin() { return values_.begin(); }
+    [[nodiscard]] auto end() { return values_.end(); }
 
 private:
     using Values = std::list<std::pair<Key, Value>>;
