@@ -257,12 +257,3 @@ static inline void cellist_sort_permute(global cellist_sort_node* nodes, uint fi
         nodes[first + at].stored.next = cellist_sort_link(first + at, last);
 #endif
 }
-
-#if CELLIST_MODES == CELLIST_LINKED
-// Says that the first `stored` nodes of the pool are allocated, and no others; one work-item a
-// shard, and one a thread slot.
-kernel void cellist_sort_allocate(CELLIST_LISTS(CELLIST_RECORD, lists), uint stored) {
-    const cellist_view lists_view = cellist_view_of(lists);
-    cellist_allocate_first(lists_shards, lists_view, stored, get_global_id(0));
-}
-#endif

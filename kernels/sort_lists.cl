@@ -165,3 +165,12 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
         if (in_class[i] > 0) atomic_add(&state->in_class[i], in_class[i]);
 #endif
 }
+
+#if CELLIST_MODES == CELLIST_LINKED
+// Says that the first `stored` nodes of the pool are allocated, and no others; one work-item a
+// shard, and one a thread slot.
+kernel void cellist_sort_allocate(CELLIST_LISTS(CELLIST_RECORD, lists), uint stored) {
+    const cellist_view lists_view = cellist_view_of(lists);
+    cellist_allocate_first(lists_shards, lists_view, stored, get_global_id(0));
+}
+#endif

@@ -36,6 +36,7 @@ TEST_CASE("whatever was moved from is refused, and the other end works") {
                                   [&] { first.finish(); },
                                   [&] { first.enqueue_wait({cl::Event()}); },
                                   [&] { (void)first.enqueue_marker(); },
+                                  [&] { first.prepare([] {}); },
                                   [&] { Lists<Item>(first, {5}); },
                                   [&] { Buffer<cl_uint>(first, 5); },
                                   [&] { Kernel(first, source, "nothing", type<Item>); },
@@ -72,6 +73,8 @@ TEST_CASE("whatever was moved from is refused, and the other end works") {
                                   [&] { (void)buffer.cl(); },
                                   [&] { (void)buffer.download(); },
                                   [&] { (void)buffer.download_async(); },
+                                  [&] { (void)buffer.download(0, 0); },
+                                  [&] { buffer.upload({}); },
                                   [&] { buffer.upload_async(std::vector<cl_uint>{1}); },
                                   [&] { buffer.upload_async({}); },
                                   [&] { buffer.fill(1); },
@@ -80,6 +83,8 @@ TEST_CASE("whatever was moved from is refused, and the other end works") {
     require_refused("Kernel", {
                                   [&] { kernel.run(1, kept, held, held, cl_uint{1}); },
                                   [&] { (void)kernel.name(); },
+                                  [&] { (void)kernel.cl(); },
+                                  [&] { (void)kernel.log(); },
                                   [&] { kept.build(kernel, 1); },
                               });
 

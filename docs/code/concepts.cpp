@@ -74,6 +74,15 @@ int main() {
     check(result[0] == 0.5f, "the lowest particle of the first bin");
     check(lengths.total == bins.download().records().size(), "the number of binned particles");
 
+    device.prepare(
+        [&] {
+            bins.build(bin, particles.size(), particles, 4.0f);
+            lowest.run(bins.shape().cells(), bins, heights);
+            bins.sort(&Particle::y);
+        },
+        [](std::size_t programs) { std::cout << programs << " programs are ready\n"; });
+    check(heights.download() == result, "the lowest particles again");
+
     // Two particles in neighbouring cells, and two at one position.
     cellist::Buffer<Particle> few(
         device, std::vector<Particle>{{1, 1, 1, 0}, {1, 1, 4, 1}, {9, 9, 9, 2}, {9, 9, 9, 3}});

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -86,6 +88,23 @@ public:
     void enqueue_wait(const std::vector<cl::Event>& events) const;
     /// Returns an event that completes after all enqueued work. Does not block.
     [[nodiscard]] cl::Event enqueue_marker() const;
+
+    /// Compiles what `frame` needs, so that later calls of it do not pause. `frame` makes the calls
+    /// of a frame: builds, sorts, reads and Kernel::run, with its real ranges and about its real
+    /// number of records. Call prepare() once, before the first frame.
+    ///
+    ///     device.prepare([&] { hits.build(insert, n, rays); hits.sort(&Hit::depth); });
+    ///
+    /// prepare() runs `frame` at least twice and until a run compiles nothing, at most 64 times:
+    /// some storages build in another way the second time. In Storage::automatic, blocking builds
+    /// also end their trial. Sorts compile what lists of all lengths need. At the end, prepare()
+    /// stores the programs in the library's cache of programs (docs/devices.md).
+    ///
+    /// `progress` is called after each program that was compiled, or loaded from the cache, with
+    /// the number of programs so far. Throws what `frame` and `progress` throw, and Error if
+    /// `frame` calls prepare(). Blocks until everything has run.
+    void prepare(const std::function<void()>& frame,
+                 const std::function<void(std::size_t programs)>& progress = {}) const;
 
     /// @private
     [[nodiscard]] const std::shared_ptr<detail::DeviceState>& state() const {

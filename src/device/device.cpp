@@ -7,6 +7,7 @@
 #include <cellist/device.hpp>
 
 #include "device/device_state.hpp"
+#include "device/preparation.hpp"
 
 namespace cellist {
 
@@ -186,6 +187,11 @@ void Device::enqueue_wait(const std::vector<cl::Event>& events) const {
 
 cl::Event Device::enqueue_marker() const { return state_->enqueue_marker(); }
 
+void Device::prepare(const std::function<void()>& frame,
+                     const std::function<void(std::size_t programs)>& progress) const {
+    state_->prepare(frame, progress);
+}
+
 namespace detail {
 
 DeviceState::DeviceState(cl::Context its_context, cl::CommandQueue its_queue, cl::Device its_device,
@@ -221,6 +227,15 @@ cl::Event DeviceState::enqueue_marker() const {
 const std::optional<Profile>& DeviceState::profile() {
     std::call_once(profile_once_, [&] { profile_ = load_profile(info); });
     return profile_;
+}
+
+void DeviceState::prepare(const std::function<void()>& frame,
+                          const std::function<void(std::size_t)>& progress) {
+    Preparation(progress).run([&] {
+        frame();
+        opencl([&] { queue.finish(); });
+    });
+    programs.store();
 }
 
 }  // namespace detail

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -39,6 +40,10 @@ struct DeviceState {
     const cl::CommandQueue& ordered_queue() const;
     /// Completes when all that was enqueued has.
     [[nodiscard]] cl::Event enqueue_marker() const;
+
+    /// See Device::prepare.
+    void prepare(const std::function<void()>& frame,
+                 const std::function<void(std::size_t)>& progress);
 
     /// What `cellist tune` has stored of the device. Read the first time; any thread may call it.
     const std::optional<Profile>& profile();

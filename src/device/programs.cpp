@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "device/device_state.hpp"
+#include "device/preparation.hpp"
 #include "device/program_text.hpp"
 
 namespace cellist::detail {
@@ -67,6 +68,7 @@ Program Programs::get(const std::string& source, const std::string& options) {
         if (stores_at_once_) store(key, kept);
         made = opencl([&] { return kept; });
     }
+    if (Preparation* preparation = Preparation::current()) preparation->count_program();
     return made;
 }
 

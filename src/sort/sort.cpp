@@ -1,11 +1,13 @@
 #include "sort/sort.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <type_traits>
 #include <utility>
 
 #include "cellist_kernels.hpp"
+#include "device/preparation.hpp"
 
 namespace cellist::detail {
 
@@ -19,6 +21,11 @@ constexpr unsigned segment_bits = 9;
 
 /// Longest list in which one work-item looks for the top k.
 constexpr cl_uint top_k_length_max = 4096;
+
+/// Whole work-groups, at least one: to prepare a sort, kernels run for no list.
+Range groups_for(std::uint64_t items, std::size_t group) {
+    return Range::padded(std::max<std::uint64_t>(items, 1), group);
+}
 
 /// Adds an argument, the arguments of a container, or other arguments.
 template <class T>
@@ -137,18 +144,20 @@ cl::Event ListSorter::sort(ListStorage& storage, const SortKey& key, std::uint32
     if (storage.cells() == 0 || top_k == 0) return device_->enqueue_marker();
     Sort sort = sort_of(storage, key);
     if (!make_state(sort)) return sort_in_place(storage, key);
-    if (select_top_k(sort, top_k)) return std::move(sort.done);
+    const bool preparing = Preparation::current() != nullptr;
+    if (select_top_k(sort, top_k) && !preparing) return std::move(sort.done);
     if (sort.linked && storage.pool().back_buffer() == nullptr) return sort_in_place(storage, key);
     if (!has_room_for(sort,
                       2 * most_left(sort, sort.plan.of_class(first_class(sort))) * sizeof(cl_uint)))
         return sort_in_place(storage, key);
     const SortTuning tuning = sort_classes(sort);
     if (sort.count > 0) {
-        sort_long(sort);
+        sort_long(sort, tuning);
     } else {
         check_nodes(sort);
-        if (sort.linked) swap_pools(sort, classes_file, tuning);
+        if (sort.linked) swap_pools(sort, tuning);
     }
+    if (preparing) rehearse(sort);
     return std::move(sort.done);
 }
 
@@ -157,6 +166,17 @@ cl::Event ListSorter::sort_in_place(ListStorage& storage, const SortKey& key) {
     Sort sort = sort_of(storage, key);
     sort_in_place(sort);
     return std::move(sort.done);
+}
+
+/// Runs, for no list, the kernels that lists of other lengths need.
+void ListSorter::rehearse(Sort& sort) {
+    sort.is_rehearsal = true;
+    sort.count = 0;
+    sort.cells = nullptr;
+    clear_state();
+    for (std::size_t index = 0; index < sort.plan.classes(); ++index)
+        sort_class(sort, sort.plan.of_class(index), 0);
+    sort_long(sort, {});
 }
 
 /// The buffer that names the cells of the lists that are left, and 1; without such a buffer, all
@@ -180,8 +200,10 @@ void ListSorter::sort_in_place(Sort& sort) {
 /// sorted: because that takes less time, or there are long lists, or k is more than a work-item
 /// keeps.
 bool ListSorter::select_top_k(Sort& sort, std::uint32_t top_k) {
-    if (!sort.plan.top_k_is_faster(top_k, sort.storage.stored() / sort.storage.cells()))
-        return false;
+    const std::uint64_t mean = Preparation::current() != nullptr
+                                   ? std::numeric_limits<std::uint64_t>::max()
+                                   : sort.storage.stored() / sort.storage.cells();
+    if (!sort.plan.top_k_is_faster(top_k, mean)) return false;
     const SortTuning tuning = sort.plan.of_top_k(top_k);
     clear_state();
     kernel({"sort_partial.cl", kernels::sort_partial_cl}, "cellist_sort_partial", sort, tuning)
@@ -250,20 +272,21 @@ void ListSorter::sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage)
     }
     const std::uint64_t together = (sort.count + tuning.lists - 1) / tuning.lists;
     kernel(classes_file, "cellist_sort_lists", sort, tuning)
-        .enqueue(Range::padded(together * tuning.items, tuning.items == 1 ? 64 : tuning.items),
+        .enqueue(groups_for(together * tuning.items, tuning.items == 1 ? 64 : tuning.items),
                  arguments, &sort.done);
     sort.cells = &longer;
 }
 
 /// Sorts the lists that are left: makes each contiguous, sorts chunks of them, and merges these.
-void ListSorter::sort_long(Sort& sort) {
+/// The tuning is that of a class that was sorted before.
+void ListSorter::sort_long(Sort& sort, const SortTuning& class_tuning) {
     ListStorage& storage = sort.storage;
     const NodePool::BackBuffer* back_buffer = storage.pool().back_buffer();
     const std::optional<Keys> keys = back_buffer != nullptr ? keys_of(sort) : std::nullopt;
     if (!keys) return sort_in_place(sort);
     const SortTuning tuning = sort.plan.of_long_lists();
     const auto count = static_cast<cl_uint>(sort.count);
-    const cl::Buffer& cells = sort.cells->cl();
+    const cl::Buffer& cells = cells_of(sort).first;
     const Memory long_lists(device_.state(), count, sizeof(cellist_sort_long_list), "long lists");
     const std::uint64_t chunks_max = storage.pool().nodes_count() / tuning.chunk_size + count;
     const Memory chunk_owners(device_.state(), chunks_max, sizeof(cl_uint), "owners of chunks");
@@ -271,8 +294,8 @@ void ListSorter::sort_long(Sort& sort) {
         sort.linked ? (storage.pool().nodes_count() >> segment_bits) + count : 0;
     const Memory segments(device_.state(), segment_count, sizeof(cl_uint2), "segments of lists");
     Memory offsets(device_.state(), segment_count, sizeof(cl_uint2), "offsets of segments");
-    const Range traversals = Range::padded((segment_count + tuning.lists - 1) / tuning.lists,
-                                           sort.plan.in_groups() ? 64 : 16);
+    const Range traversals = groups_for((segment_count + tuning.lists - 1) / tuning.lists,
+                                        sort.plan.in_groups() ? 64 : 16);
 
     Arguments assign = arguments_of(storage, cells, count, long_lists.cl(), chunk_owners.cl(),
                                     static_cast<cl_uint>(chunks_max), state_.cl());
@@ -285,14 +308,16 @@ void ListSorter::sort_long(Sort& sort) {
         assign.add(offsets.cl());
         assign.add(back_buffer->heads.cl());
     }
-    run_long(sort, "cellist_sort_assign", Range::padded(count, 64), assign);
+    run_long(sort, "cellist_sort_assign", groups_for(count, 64), assign);
     if (sort.linked)
         run_long(sort, "cellist_sort_gather", traversals,
                  arguments_of(storage, cells, count, long_lists.cl(), segments.cl(), offsets.cl(),
                               back_buffer->nodes.cl()));
     read_state(sort);
-    check_nodes(sort);
-    if (sort.linked) swap_pools(sort, long_lists_file, tuning);
+    if (!sort.is_rehearsal) {
+        check_nodes(sort);
+        if (sort.linked) swap_pools(sort, class_tuning);
+    }
     merge(sort, long_lists, chunk_owners, *keys);
 }
 
@@ -319,18 +344,19 @@ void ListSorter::merge(Sort& sort, const Memory& long_lists, const Memory& chunk
     const cl::Buffer& back_buffer = sort.storage.pool().back_buffer()->nodes.cl();
     run_long(
         sort, "cellist_sort_chunks",
-        Range::padded(std::uint64_t{chunks} * tuning.items, tuning.items == 1 ? 16 : tuning.items),
+        groups_for(std::uint64_t{chunks} * tuning.items, tuning.items == 1 ? 16 : tuning.items),
         arguments_of(long_lists.cl(), chunk_owners.cl(), chunks, nodes, keys.of_pool.cl(),
                      sort.program.values));
 
     const unsigned merges_a_chunk = std::max(tuning.chunk_size / tuning.merge_items, 1u);
     const Range merges =
-        Range::padded(std::uint64_t{chunks} * merges_a_chunk, sort.plan.in_groups() ? 128 : 16);
+        groups_for(std::uint64_t{chunks} * merges_a_chunk, sort.plan.in_groups() ? 128 : 16);
     const cl::Buffer* from = &nodes;
     const cl::Buffer* to = &back_buffer;
     const cl::Buffer* keys_from = &keys.of_pool.cl();
     const cl::Buffer* keys_to = &keys.of_back_buffer.cl();
-    for (std::uint64_t run = tuning.chunk_size; run < sort.state.longest; run *= 2) {
+    const std::uint64_t longest = sort.is_rehearsal ? 2 * tuning.chunk_size : sort.state.longest;
+    for (std::uint64_t run = tuning.chunk_size; run < longest; run *= 2) {
         run_long(
             sort, "cellist_sort_merge_runs", merges,
             arguments_of(long_lists.cl(), chunk_owners.cl(), chunks, *from, *to,
@@ -338,8 +364,14 @@ void ListSorter::merge(Sort& sort, const Memory& long_lists, const Memory& chunk
         std::swap(from, to);
         std::swap(keys_from, keys_to);
     }
-    run_long(sort, "cellist_sort_return", Range::padded(std::uint64_t{chunks} * tuning.chunk_size),
-             arguments_of(long_lists.cl(), chunk_owners.cl(), chunks, back_buffer, nodes));
+    const Arguments arguments =
+        arguments_of(long_lists.cl(), chunk_owners.cl(), chunks, back_buffer, nodes);
+    run_long(sort, "cellist_sort_return",
+             groups_for(std::uint64_t{chunks} * tuning.chunk_size, 256), arguments);
+    // PoCL compiles a kernel again for ranges of 65,536 work-items or more.
+    if (sort.is_rehearsal)
+        run_long(sort, "cellist_sort_return", groups_for(sort.storage.pool().nodes_count(), 256),
+                 arguments);
 }
 
 /// Enqueues a kernel of sort_long.cl.
@@ -349,14 +381,20 @@ void ListSorter::run_long(Sort& sort, const char* name, const Range& range,
         .enqueue(range, arguments, &sort.done);
 }
 
-/// Swaps the pools: all lists have moved to the back buffer. The file and the tuning are those of a
-/// program that has just run.
-void ListSorter::swap_pools(Sort& sort, const KernelFile& file, const SortTuning& tuning) {
+/// Swaps the pools: all lists have moved to the back buffer. The tuning is that of a class that was
+/// sorted before.
+void ListSorter::swap_pools(Sort& sort, const SortTuning& tuning) {
     ListStorage& storage = sort.storage;
-    if (storage.stored() < storage.pool().nodes_count()) kernel
-        (file, "cellist_sort_allocate", sort, tuning)
-            .enqueue(Range::padded(storage.pool().counter_elements()),
-                     arguments_of(storage, static_cast<cl_uint>(storage.stored())), &sort.done);
+    const auto allocate = [&](const SortTuning& of_class) {
+        Kernel& kernel_of_class = kernel(classes_file, "cellist_sort_allocate", sort, of_class);
+        kernel_of_class.enqueue(Range::padded(storage.pool().counter_elements()),
+                                arguments_of(storage, static_cast<cl_uint>(storage.stored())),
+                                &sort.done);
+    };
+    if (storage.stored() < storage.pool().nodes_count()) allocate(tuning);
+    if (Preparation::current() != nullptr)
+        for (std::size_t index = 0; index < sort.plan.classes(); ++index)
+            allocate(sort.plan.of_class(index));
     storage.pool().swap_back_buffer();
 }
 

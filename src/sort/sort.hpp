@@ -28,7 +28,8 @@ public:
     ListSorter(MemoryOwner device, RecordKernels& kernels);
 
     /// Sorts all lists, the first `top_k` nodes of each at least: the others may follow in any
-    /// order. Blocks until it is known how long the lists are. Throws Error where links or offsets
+    /// order. Blocks until it is known how long the lists are. During Device::prepare, also runs
+    /// the kernels that lists of other lengths need. Throws Error where links or offsets
     /// are corrupt. Whatever fails, sound lists keep their records, in some order.
     cl::Event sort(ListStorage& storage, const SortKey& key, std::uint32_t top_k);
     /// Sorts all lists in place, one work-item a list. Does not block.
@@ -45,10 +46,11 @@ private:
         SortPlan plan;
         bool linked;
         ExpressionProgram program;
-        std::string definitions;   ///< for all kernels of this sort, except the program of the key
-        std::uint64_t count;       ///< lists that are left
-        const Memory* cells = {};  ///< whose lists these are; null for all
-        cl::Event done = {};       ///< of the last command
+        std::string definitions;    ///< for all kernels of this sort, except the program of the key
+        std::uint64_t count;        ///< lists that are left
+        const Memory* cells = {};   ///< whose lists these are; null for all
+        bool is_rehearsal = false;  ///< runs for no list
+        cl::Event done = {};        ///< of the last command
         cellist_sort_state state = {};
     };
 
@@ -58,7 +60,8 @@ private:
     void sort_in_place(Sort& sort);
     SortTuning sort_classes(Sort& sort);
     void sort_class(Sort& sort, const SortTuning& tuning, cl_uint stage);
-    void sort_long(Sort& sort);
+    void sort_long(Sort& sort, const SortTuning& class_tuning);
+    void rehearse(Sort& sort);
     /// The keys of long lists, where their values must be kept: one buffer goes with the pool, the
     /// other with its back buffer.
     struct Keys {
@@ -69,7 +72,7 @@ private:
     [[nodiscard]] std::optional<Keys> keys_of(const Sort& sort) const;
     [[nodiscard]] bool has_room_for(const Sort& sort, std::uint64_t more_bytes) const;
     void run_long(Sort& sort, const char* name, const Range& range, const Arguments& arguments);
-    void swap_pools(Sort& sort, const KernelFile& file, const SortTuning& tuning);
+    void swap_pools(Sort& sort, const SortTuning& tuning);
     [[nodiscard]] std::size_t first_class(const Sort& sort) const;
     [[nodiscard]] std::uint64_t most_left(const Sort& sort, const SortTuning& tuning) const;
 

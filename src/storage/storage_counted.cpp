@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cellist_kernels.hpp"
+#include "device/preparation.hpp"
 
 namespace cellist::detail {
 
@@ -55,6 +56,7 @@ void CountedStorage::set_partitions(std::unique_ptr<Partitions> partitions) {
 void CountedStorage::start(const Kept& kept) {
     ListStorage::start(kept);
     counted_ = false;
+    if (Preparation::current() != nullptr && !has_counted_) return set_partitions(nullptr);
     if (partitions_ && partitions_->plan().records >= capacity_nodes()) return;
     set_partitions(nullptr);
     set_partitions(partitions_for_pool());
@@ -81,6 +83,7 @@ void CountedStorage::begin_pass() {
     } else if (!counted_) {
         clear();
         view_.mode = CELLIST_COUNTING;
+        has_counted_ = true;
     } else {
         clear_words(0, counts_at(), shape_.cells());
     }

@@ -40,8 +40,9 @@ private:
     [[nodiscard]] cl_uint counts_at() const { return static_cast<cl_uint>(shape_.cells() + 1); }
 
     CellScan scan_;
-    bool counted_ = false;  ///< the next pass fills
-    Counters counting_;     ///< counters of the counting pass
+    bool counted_ = false;      ///< the next pass fills
+    bool has_counted_ = false;  ///< some build has
+    Counters counting_;         ///< counters of the counting pass
     CellScan::Totals demand_;
     Findings filled_{
         {pool_.owner(), 1, sizeof(cellist_findings), "findings"}};  ///< of the filling pass

@@ -3,6 +3,7 @@
 #include <exception>
 
 #include "device/device_state.hpp"
+#include "device/preparation.hpp"
 #include "tune/measure.hpp"
 
 namespace cellist::detail {
@@ -98,6 +99,7 @@ BuildReport AutomaticStorage::build_once(const std::function<BuildReport()>& run
         tuner_.built(report.stored);
         return report;
     }
+    if (Preparation* preparation = Preparation::current()) preparation->repeat();
     const Storage tried = tuner_.storage();
     Measurement measurement;
     const BuildReport report = measure(*this, run, measurement);

@@ -55,13 +55,22 @@ std::size_t use(const cellist::Device& device) {
     std::size_t sum = records.size() + records.download().size() +
                       records.download_async().get().size() + numbers.size();
     const std::vector<Hit> values(3);
+    records.upload(values);
+    records.upload(values, 0);
     records.upload_async(values).wait();
+    records.upload_async(values, 0).wait();
+    sum += records.download(1, 2).size() + records.download_async(1, 2).get().size();
 
     Lists<Hit> hits(device, {4, 3}, {.storage = Storage::counted, .capacity_nodes = 7});
     Lists<Photon> photons(device, {4});
     const Source source{.text = "kernel void f(CELLIST_LISTS(Hit, hits), uint n) {}"};
     Kernel kernel(device, source, "f", hits, photons, type<Corner>);
     Kernel other(device, "kernel void f(CELLIST_LISTS(Hit, hits), uint n) {}", "f", hits);
+    sum += kernel.name().size() + kernel.log().size() + (kernel.cl()() != nullptr ? 1U : 0U);
+    const int width = 4;
+    sum += Shape{width, 3U, std::size_t{2}}.cell({width - 1, 2});
+    device.prepare([&] { hits.build(kernel, 7, cl_uint{3}); });
+    device.prepare([] {}, [&](std::size_t programs) { sum += programs; });
     sum += hits.build(kernel, 7, cl_uint{3}).stored;
     sum += hits.build([&] { kernel.run({2, 3}, hits, cl_uint{3}); }).stored;
     sum += hits.build_async(kernel, Range::padded(7), cl_uint{3}).get().stored;

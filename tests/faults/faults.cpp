@@ -1,11 +1,14 @@
 // Where an OpenCL call fails, whichever it is, the library throws OpenClError that names the call,
 // and leaks nothing; the container keeps its lists or is empty, and then does the same work as
 // ever.
+#include <algorithm>
 #include <iostream>
 #include <optional>
 
+#include "device/device_state.hpp"
 #include "layer.hpp"
 #include "scene.hpp"
+#include "support/cache.hpp"
 #include "support/errors.hpp"
 #include "support/storages.hpp"
 
@@ -82,8 +85,15 @@ bool fails_well(const Device& on, const Operation& operation, Storage storage, c
 }
 
 bool fails_well(const Device& on, const Life& life, Storage storage, const Plan& plan) {
-    const auto run = [&] { life.run(on, storage); };
-    return fails(plan, run, {false, false});
+    bool silent = false;
+    const auto run = [&] {
+        life.run(on, storage);
+        const std::vector<Fault> faults = faults::failures();
+        silent =
+            life.falls_back && std::all_of(faults.begin(), faults.end(),
+                                           [](const Fault& fault) { return fault.lacks_memory(); });
+    };
+    return fails(plan, run, {silent, life.falls_back});
 }
 
 /// Compiles what the work needs, and the checks of it.
@@ -192,6 +202,82 @@ kernel void insert(CELLIST_LISTS(Item, lists))
     REQUIRE(difference() <= 1);
     use(lists);
     REQUIRE(difference() <= 1);
+}
+
+TEST_CASE("after prepare() no program is built or loaded") {
+    const auto programs = [] {
+        return faults::calls_of("clBuildProgram") + faults::calls_of("clCompileProgram") +
+               faults::calls_of("clLinkProgram");
+    };
+    CELLIST_EACH_STORAGE(storage);
+    const Device on = Device::choose();
+    constexpr cl_uint cells = 64;
+    CELLIST_RANDOM(random, 91u);
+    Inserts<Item> inserts = random_inserts(20'000, cells, random);
+    Lists<Item> lists(on, {cells}, {.storage = storage});
+    Inserter inserter(lists, on);
+    const auto frame = [&] {
+        require_complete(inserter.build(lists, inserts), inserts.size());
+        lists.sort(&Item::key);
+        lists.partial_sort_by("record.id ^ 1u", 4);
+        (void)lists.lengths();
+        (void)lists.pack(&Item::id);
+        REQUIRE(lists.download().records().size() == inserts.size());
+        REQUIRE(lists.validate().ok());
+    };
+    on.prepare(frame);
+    const std::uint64_t before = programs();
+    REQUIRE(before > 0);
+    frame();
+    for (const std::size_t size : {std::size_t{0}, std::size_t{100}, std::size_t{30'000}}) {
+        inserts = random_inserts(size, cells, random);
+        frame();
+        std::fill(inserts.cells.begin(), inserts.cells.end(), 7u);
+        frame();
+    }
+    REQUIRE(programs() == before);
+}
+
+TEST_CASE("a program whose file cannot be loaded is built, and a failed store stores nothing") {
+    const ProgramCacheDirectory cache;
+    const std::string source = "kernel void f(global uint* out, uint x) { *out = x; }";
+    std::optional<Device> on;
+    const auto fails_or_works = [&](const Plan& plan, const auto& run) {
+        faults::arm(plan);
+        std::optional<OpenClError> error;
+        try {
+            run();
+        } catch (const OpenClError& caught) {
+            error = caught;
+        }
+        faults::disarm();
+        return !faults::failures().empty();
+    };
+    const auto make = [&] { Kernel(*on, source, "f"); };
+    for (const Plan::Extent extent : {Plan::Extent::single, Plan::Extent::lasting}) {
+        // The first device has no file to load, the second one has.
+        for (std::uint64_t call = 1;; ++call) {
+            std::filesystem::remove_all(cache.programs());
+            on.emplace(Device::choose());
+            make();
+            const References before = faults::references();
+            const bool failed = fails_or_works({.call = call, .extent = extent},
+                                               [&] { on->state()->programs.store(); });
+            INFO("store, call " << call);
+            REQUIRE(before == faults::references());
+            on.emplace(Device::choose());
+            make();
+            if (!failed) break;
+        }
+        REQUIRE(std::filesystem::exists(cache.programs()));
+        for (std::uint64_t call = 1;; ++call) {
+            on.emplace(Device::choose());
+            const bool failed = fails_or_works({.call = call, .extent = extent}, make);
+            INFO("load, call " << call);
+            make();
+            if (!failed) break;
+        }
+    }
 }
 
 TEST_CASE("any call fails once") {

@@ -14,6 +14,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <tuple>
 #include <type_traits>
 
@@ -32,6 +33,7 @@ std::mutex mutex;  ///< of everything that follows
 std::optional<Plan> plan;
 int pauses = 0;
 std::uint64_t calls = 0;
+std::map<std::string, std::uint64_t> calls_by_name;
 std::vector<Fault> failed;
 std::map<const void*, Object> objects;
 std::uint64_t too_many_releases = 0;
@@ -47,6 +49,7 @@ struct Verdict {
 /// Counts a call.
 Verdict next_call(const char* name, cl_int resources, cl_int object) {
     const std::lock_guard lock(mutex);
+    ++calls_by_name[name];
     if (!plan || pauses > 0) return {};
     ++calls;
     const bool lost = plan->extent == Plan::Extent::lasting && calls > plan->call;
@@ -362,6 +365,11 @@ void disarm() {
 std::vector<Fault> failures() {
     const std::lock_guard lock(mutex);
     return failed;
+}
+
+std::uint64_t calls_of(const std::string& call) {
+    const std::lock_guard lock(mutex);
+    return calls_by_name[call];
 }
 
 Pause::Pause() {

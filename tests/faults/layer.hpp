@@ -39,6 +39,9 @@ void disarm();
 /// The calls that have failed since arm().
 std::vector<Fault> failures();
 
+/// How often the program has called an entry point that can fail, e.g. "clBuildProgram".
+std::uint64_t calls_of(const std::string& call);
+
 /// Lets calls of its scope through and does not count them: those of the test, not of the library.
 class Pause {
 public:

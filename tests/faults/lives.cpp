@@ -27,6 +27,24 @@ void live_on(const Device& device, Storage storage) {
     require(Contents::empty, lists, oracle);
 }
 
+/// Prepares a frame that builds and sorts.
+void prepare(const Device& device, Storage storage) {
+    const Inserts<Item> inserts = scene_inserts();
+    const Oracle<Item> oracle = oracle_of(inserts, cell_count);
+    Kernel insert(device, scene_source(), "insert", type<Item>);
+    const Buffer<cl_uint> cells(device, inserts.cells);
+    const Buffer<Item> records(device, inserts.records);
+    Lists<Item> lists(device, {cell_count},
+                      scene_options(device, storage, Room::enough, Overflow::grow));
+    device.prepare([&] {
+        require_all_stored(lists.build(insert, insert_range(), cells, records, insert_count),
+                           oracle);
+        lists.sort(&Item::id);
+    });
+    require_sorted(lists.download(), oracle, by_id);
+    require_sound(lists.validate());
+}
+
 /// A new device. It goes while no call fails: the destructor waits for the queue, and nobody learns
 /// whether that failed.
 struct NewDevice {
@@ -71,6 +89,7 @@ constexpr Life table_of_lives[] = {
     {"adopt a queue", adopt_a_queue},
     {"everything, on a device in use", live_on},
     {"everything, on a new device", live_on_a_new_device, 151},
+    {"prepare, on a device in use", prepare, 13, true},
 };
 
 }  // namespace

@@ -53,6 +53,8 @@ struct Life {
     const char* name;
     void (*run)(const Device& device, Storage storage);
     std::uint64_t step = 1;
+    /// As in Operation; what it does then may succeed.
+    bool falls_back = false;
 };
 std::span<const Life> lives();
 
