@@ -283,7 +283,14 @@ void ListSorter::sort_long(Sort& sort, const SortTuning& class_tuning) {
     ListStorage& storage = sort.storage;
     const NodePool::BackBuffer* back_buffer = storage.pool().back_buffer();
     const std::optional<Keys> keys = back_buffer != nullptr ? keys_of(sort) : std::nullopt;
-    if (!keys) return sort_in_place(sort);
+    if (!keys) {
+        if (sort.linked && !sort.is_rehearsal) {
+            // The lists that were sorted are in the back buffer, which is not used.
+            sort.cells = nullptr;
+            sort.count = storage.cells();
+        }
+        return sort_in_place(sort);
+    }
     const SortTuning tuning = sort.plan.of_long_lists();
     const auto count = static_cast<cl_uint>(sort.count);
     const cl::Buffer& cells = cells_of(sort).first;
