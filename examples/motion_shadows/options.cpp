@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "build.hpp"
+#include "camera_options.hpp"
 #include "closest.hpp"
 #include "command_line.hpp"
 #include "files.hpp"
@@ -76,6 +77,8 @@ void add_scene_options(support::CommandLine& line, Options& options) {
             support::refuse("--light", text, "spot or directional");
         options.parallel_light = text == "directional";
     });
+    support::add_view(line, "", [&](const support::Orbit& view) { options.view = view; });
+    support::add_zoom(line, options.zoom);
     line.add_number("--width", settings.width, 1, RASTER_SIDE_MAX, "width in pixels");
     line.add_number("--height", settings.height, 1, RASTER_SIDE_MAX, "height in pixels");
 }
@@ -226,6 +229,7 @@ Scene make_scene(const Options& options) {
     Scene scene = scene_of(options);
     if (options.exposure != 1) expose(scene, options.exposure);
     if (options.parallel_light) make_light_parallel(scene);
+    scene.eye = support::moved_eye(scene.eye, scene.target, options.view, options.zoom);
     return scene;
 }
 

@@ -3,10 +3,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "camera.hpp"
 #include "frame.hpp"
 #include "scene.hpp"
 
@@ -18,7 +20,9 @@ struct Options {
     std::size_t triangles = 265'000;
     RigidMotion motion;  ///< of a mesh
     bool parallel_light = false;
-    double exposure = 1;  ///< the part of the motion that the shutter sees
+    double exposure = 1;                 ///< the part of the motion that the shutter sees
+    std::optional<support::Orbit> view;  ///< else as the scene says
+    double zoom = 1;
     Settings settings;
     std::string method = "exact";  ///< or "all"
     cl_uint moments = 3000;        ///< of the reference

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "camera_options.hpp"
 #include "closest.hpp"
 #include "command_line.hpp"
 #include "files.hpp"
@@ -52,20 +53,6 @@ void read_size(const std::string& text, FrameOptions& options) {
                          std::to_string(RASTER_SIDE_MAX) + " pixels");
     options.width = static_cast<int>(*width);
     options.height = static_cast<int>(*height);
-}
-
-void read_view(const std::string& text, FrameOptions& options) {
-    const std::size_t comma = text.find(',');
-    const auto azimuth = parse<double>(std::string_view(text).substr(0, comma));
-    const auto elevation = comma == std::string::npos
-                               ? std::nullopt
-                               : parse<double>(std::string_view(text).substr(comma + 1));
-    if (!azimuth || !elevation || !std::isfinite(*azimuth) || !std::isfinite(*elevation))
-        refuse("--view", text, "AZIMUTH,ELEVATION in degrees, such as 25,8");
-    if (std::abs(*elevation) > 90)
-        throw InputError("--view " + text + ": the elevation must be from -90 to 90");
-    options.orbit = {.azimuth_degrees = std::fmod(*azimuth, 360.0),
-                     .elevation_degrees = *elevation};
 }
 
 void read_samples(const std::string& text, FrameOptions& options) {
@@ -329,11 +316,9 @@ void add_frame_options(support::CommandLine& line, FrameOptions& options) {
              options.quality.depth_scale == DepthScale::linear ? "linear" : "reversed",
              "stored depth: linear (the depth) or reversed (1 / depth)", "S",
              [&](Text text) { read_depth_scale(text, options); });
-    line.add("--view",
-             support::shortest(options.orbit.azimuth_degrees) + "," +
-                 support::shortest(options.orbit.elevation_degrees),
-             "direction to look from, in degrees", "AZIMUTH,ELEVATION",
-             [&](Text text) { read_view(text, options); });
+    support::add_view(line, support::view_text(options.orbit),
+                      [&](const support::Orbit& view) { options.orbit = view; });
+    support::add_zoom(line, options.orbit.zoom);
     line.add("--stereo", options.eye_separation ? support::shortest(*options.eye_separation) : "",
              "draw two eyes at this distance; the scene has radius 1", "DISTANCE", [&](Text text) {
                  options.eye_separation =
@@ -388,13 +373,15 @@ std::string title_of(const FrameOptions& options) {
     return title;
 }
 
+bool sees_floor(const Scene& scene, const FrameOptions& options) {
+    return options.opaque_floor &&
+           std::ranges::any_of(make_views(options), [&](const raster::View& view) {
+               return view.eye[1] > scene.lighting.floor_height;
+           });
+}
+
 void stand_on_floor(Scene& scene, const FrameOptions& options) {
-    if (!options.opaque_floor) return;
-    for (const raster::View& view : make_views(options))
-        if (view.eye[1] > scene.lighting.floor_height) {
-            add_floor(scene);
-            return;
-        }
+    if (sees_floor(scene, options)) add_floor(scene);
 }
 
 Scene make_scene(const FrameOptions& options) {
@@ -405,9 +392,13 @@ Scene make_scene(const FrameOptions& options) {
     return scene;
 }
 
+bool moves(const Scene& scene) {
+    return std::ranges::any_of(
+        scene.instances, [](const Instance& instance) { return instance.turns_per_second != 0; });
+}
+
 void require_motion(const Scene& scene, const FrameOptions& options, const std::string& option) {
-    const auto moves = [](const Instance& instance) { return instance.turns_per_second != 0; };
-    if (std::ranges::none_of(scene.instances, moves))
+    if (!moves(scene))
         throw InputError(option + ": nothing moves in '" + support::text_of(options.scene) +
                          "', so leave it out");
 }

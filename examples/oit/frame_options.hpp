@@ -75,9 +75,14 @@ struct MeshFile {
 /// moves.
 [[nodiscard]] Scene make_scene(const FrameOptions& options);
 
-/// Adds the floor that the options ask for, if the eye is above it: from below, it would hide the
-/// scene.
+/// Whether the options ask for a floor, and an eye is above it: from below, it would hide the scene.
+[[nodiscard]] bool sees_floor(const Scene& scene, const FrameOptions& options);
+
+/// Adds this floor.
 void stand_on_floor(Scene& scene, const FrameOptions& options);
+
+/// Whether time changes something in the scene.
+[[nodiscard]] bool moves(const Scene& scene);
 
 /// Throws InputError, which begins with `option`, where time changes nothing in the scene.
 void require_motion(const Scene& scene, const FrameOptions& options, const std::string& option);

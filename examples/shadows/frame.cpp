@@ -345,6 +345,10 @@ void Renderer::gather_blocked(support::PassTimes* times, const TakeRays& take_ra
     }
 }
 
+void Renderer::follow_camera(const Scene& scene) {
+    eye_.move(raster_placed(scene), eye_view(scene, gather_));
+}
+
 FrameCounts Renderer::counts() const {
     const std::vector<cl_uint> counts = ray_counts_.download();
     return {counts[0], counts[1], build_};

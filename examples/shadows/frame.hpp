@@ -77,6 +77,9 @@ public:
     void draw(const Scene& scene, support::PassTimes* times = nullptr,
               const TakeRays& take_rays = {});
 
+    /// Moves the camera to where the scene has it.
+    void follow_camera(const Scene& scene);
+
     /// What the last frame counted. Blocks.
     [[nodiscard]] FrameCounts counts() const;
 

@@ -30,7 +30,7 @@ std::vector<double> draw_frames(const cellist::Device& device, const Options& op
     renderer.draw(scene);
     std::vector<double> frames_ms;
     for (std::uint32_t frame = 1; frame <= options.frames; ++frame) {
-        if (scene.move) scene.move(scene, options.time_step * (frame - 1));
+        if (scene.move) scene.move(scene, options.time + options.time_step * (frame - 1));
         frames_ms.push_back(support::measure_ms(device, [&] { renderer.draw(scene); }));
         if (options.out.has_number())
             support::write_image(options.out.of(frame), renderer.picture().download(),

@@ -8,6 +8,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "camera_options.hpp"
 #include "closest.hpp"
 #include "command_line.hpp"
 #include "files.hpp"
@@ -53,6 +54,9 @@ void add_scene_options(support::CommandLine& line, Options& options) {
     line.add("--light-position", "",
              "where the light is, in metres; the room is 3 x 2 x 2 around 0,0,0", "X,Y,Z",
              [&](Text text) { options.light_position = read_position(text); });
+    support::add_view(line, "", [&](const support::Orbit& view) { options.view = view; });
+    support::add_zoom(line, options.zoom);
+    line.add_real("--time", options.time, -1e6, 1e6, "time of the first frame, in seconds", "T");
     line.add_number("--width", settings.width, 1, RASTER_SIDE_MAX, "width in pixels");
     line.add_number("--height", settings.height, 1, RASTER_SIDE_MAX, "height in pixels");
 }
@@ -123,6 +127,7 @@ void check(const support::CommandLine& line, const Options& options) {
     const bool is_swarm = options.scene == "swarm";
     const support::IdleOption table[] = {
         {"--triangles", !is_swarm, "--triangles is for the scene swarm"},
+        {"--time", !is_swarm, "--time is for the scene swarm: nothing else moves"},
         {"--time-step", !is_swarm, "--time-step is for the scene swarm: nothing else moves"},
         {"--reference", options.trade, "--trade compares pictures itself: leave out --reference"},
         {"--out", options.trade, "--trade writes no picture: leave out --out"},
@@ -181,6 +186,8 @@ Scene make_scene(const Options& options) {
         if (glm::length(scene.light.target - scene.light.position) < 1e-3)
             throw support::InputError("--light-position is where the light shines to: move it");
     }
+    scene.eye = support::moved_eye(scene.eye, scene.target, options.view, options.zoom);
+    if (scene.move) scene.move(scene, options.time);
     return scene;
 }
 

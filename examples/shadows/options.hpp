@@ -9,6 +9,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "camera.hpp"
 #include "frame.hpp"
 #include "picture_name.hpp"
 #include "scene.hpp"
@@ -22,7 +23,10 @@ struct Options {
     bool parallel_light = false;
     std::optional<glm::dvec3> light_position;
     Settings settings;
+    std::optional<support::Orbit> view;  ///< else as the scene says
+    double zoom = 1;
     std::uint32_t frames = 5;
+    double time = 0;          ///< of the first frame, in seconds
     double time_step = 0.04;  ///< in seconds
     support::PictureName out{"shadows.png"};
     std::filesystem::path out_unblocked, out_a, out_b, heatmap, out_error, json;

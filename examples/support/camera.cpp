@@ -21,6 +21,15 @@ void set_row(cl_float (&row)[4], const glm::dvec3& axis, const glm::dvec3& eye, 
 
 constexpr double radians = std::numbers::pi / 180;
 
+// From the centre of an orbit towards the eye.
+glm::dvec3 direction_of(const Orbit& orbit) {
+    const double sin_azimuth = std::sin(orbit.azimuth_degrees * radians);
+    const double cos_azimuth = std::cos(orbit.azimuth_degrees * radians);
+    const double sin_elevation = std::sin(orbit.elevation_degrees * radians);
+    const double cos_elevation = std::cos(orbit.elevation_degrees * radians);
+    return {sin_azimuth * cos_elevation, sin_elevation, cos_azimuth * cos_elevation};
+}
+
 // Unit vectors of a camera in the world.
 struct Axes {
     glm::dvec3 right, down, forward;
@@ -63,16 +72,11 @@ double focal_pixels(double field_degrees, int width, int height) {
 raster::View frame_from(const Orbit& orbit, int width, int height, double to_the_right) {
     constexpr double field_degrees = 30;
     constexpr double filled = 0.97;  // of the shorter side, by the sphere
-    const double sin_azimuth = std::sin(orbit.azimuth_degrees * radians);
-    const double cos_azimuth = std::cos(orbit.azimuth_degrees * radians);
-    const double sin_elevation = std::sin(orbit.elevation_degrees * radians);
-    const double cos_elevation = std::cos(orbit.elevation_degrees * radians);
-
-    const glm::dvec3 towards_eye(sin_azimuth * cos_elevation, sin_elevation,
-                                 cos_azimuth * cos_elevation);
-    const glm::dvec3 right(cos_azimuth, 0, -sin_azimuth);
+    const glm::dvec3 towards_eye = direction_of(orbit);
+    const double azimuth = orbit.azimuth_degrees * radians;
+    const glm::dvec3 right(std::cos(azimuth), 0, -std::sin(azimuth));
     const double distance =
-        1 / std::sin(std::atan(filled * std::tan(0.5 * field_degrees * radians)));
+        1 / std::sin(std::atan(filled * std::tan(0.5 * field_degrees * radians))) / orbit.zoom;
     raster::View view =
         pinhole(distance * towards_eye + to_the_right * right,
                 {right, glm::cross(right, towards_eye), -towards_eye},
@@ -82,6 +86,16 @@ raster::View frame_from(const Orbit& orbit, int width, int height, double to_the
 }
 
 }  // namespace
+
+Orbit orbit_of(const glm::dvec3& eye, const glm::dvec3& target) {
+    const glm::dvec3 direction = glm::normalize(eye - target);
+    return {.azimuth_degrees = std::atan2(direction.x, direction.z) / radians,
+            .elevation_degrees = std::asin(std::clamp(direction.y, -1.0, 1.0)) / radians};
+}
+
+glm::dvec3 eye_on(const Orbit& orbit, const glm::dvec3& target, double distance) {
+    return target + distance / orbit.zoom * direction_of(orbit);
+}
 
 raster::View frame_unit_sphere(const Orbit& orbit, int width, int height) {
     return frame_from(orbit, width, height, 0);

@@ -12,10 +12,18 @@ namespace support {
 struct Orbit {
     double azimuth_degrees = 0;    ///< 0 looks from +z, 90 from +x
     double elevation_degrees = 0;  ///< -90 to 90; positive looks down
+    double zoom = 1;               ///< divides the distance from the origin
 };
 
+/// The direction and the zoom 1 of an eye that looks at `target`.
+[[nodiscard]] Orbit orbit_of(const glm::dvec3& eye, const glm::dvec3& target);
+
+/// The eye on an orbit around `target`, at `distance` where the zoom is 1.
+[[nodiscard]] glm::dvec3 eye_on(const Orbit& orbit, const glm::dvec3& target, double distance);
+
 /// The perspective view of an orbit camera that frames a sphere of radius 1 in an image of
-/// width x height pixels. The field of view is 30 degrees along the shorter side.
+/// width x height pixels, where its zoom is 1. The field of view is 30 degrees along the shorter
+/// side.
 [[nodiscard]] raster::View frame_unit_sphere(const Orbit& orbit, int width, int height);
 
 /// The same for two eyes, left and right, at this distance from each other; both see the origin in

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -9,6 +10,12 @@
 #include <cellist/opencl.hpp>
 
 namespace support {
+
+/// Images of width x height pixels beside one another, row by row from the top. `image` has one
+/// after the other.
+template <class Pixel>
+[[nodiscard]] std::vector<Pixel> side_by_side(const std::vector<Pixel>& image, int width,
+                                              int height, std::size_t images);
 
 /// The sRGB encoding of a linear value, both clamped to 0 ... 1. NaN becomes 0.
 [[nodiscard]] double srgb_from_linear(double linear);
@@ -57,3 +64,19 @@ void write_image(const std::filesystem::path& path, std::span<const cl_float4> p
                  int height);
 
 }  // namespace support
+
+// ---- implementation
+
+template <class Pixel>
+std::vector<Pixel> support::side_by_side(const std::vector<Pixel>& image, int width, int height,
+                                         std::size_t images) {
+    const auto columns = static_cast<std::size_t>(width), lines = static_cast<std::size_t>(height);
+    std::vector<Pixel> rows;
+    rows.reserve(image.size());
+    for (std::size_t y = 0; y < lines; ++y)
+        for (std::size_t i = 0; i < images; ++i) {
+            const auto row = image.begin() + static_cast<std::ptrdiff_t>((i * lines + y) * columns);
+            rows.insert(rows.end(), row, row + static_cast<std::ptrdiff_t>(columns));
+        }
+    return rows;
+}

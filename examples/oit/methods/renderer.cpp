@@ -97,6 +97,16 @@ double Renderer::draw_changed() {
     return draw();
 }
 
+std::vector<PixelFragment> Renderer::fragments_at(int x, int y, std::size_t eye) {
+    const Frame& drawn = drawn_frame();
+    const auto place = [&](int i) {
+        return static_cast<std::size_t>(i / drawn.quality.reduce + drawn.margin);
+    };
+    const auto width = static_cast<std::size_t>(drawn.width());
+    const auto height = static_cast<std::size_t>(drawn.height());
+    return pixel_list(source_, (eye * height + place(y)) * width + place(x));
+}
+
 PassTimes Renderer::draw_by_pass() {
     PassTimes times;
     do {

@@ -12,6 +12,7 @@
 #include "frame/reduction.hpp"
 #include "methods/count_fragments.hpp"
 #include "methods/method.hpp"
+#include "methods/pixel_list.hpp"
 
 namespace oit {
 
@@ -60,6 +61,9 @@ public:
     /// The number of transparent fragments in each pixel of drawn_frame(), whatever the method
     /// stores. Draws them once more. Blocks.
     [[nodiscard]] std::vector<cl_uint> layers() { return count_fragments(source_); }
+    /// The transparent fragments of a pixel of the image of an eye, nearest first; without those of
+    /// other pixels. With Quality::reduce, of the larger pixel around it. Blocks.
+    [[nodiscard]] std::vector<PixelFragment> fragments_at(int x, int y, std::size_t eye);
     /// The frame whose fragments the method gets: smaller than the image with Quality::reduce.
     [[nodiscard]] const Frame& drawn_frame() const { return source_.frame(); }
     [[nodiscard]] const Method& method() const { return *method_; }

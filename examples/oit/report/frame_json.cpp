@@ -29,6 +29,7 @@ ordered_json json_of(const FrameOptions& options, std::string_view program) {
     json["stereo"] = or_null(options.eye_separation);
     json["eyes"] = options.eye_separation ? 2 : 1;
     json["view"] = {options.orbit.azimuth_degrees, options.orbit.elevation_degrees};
+    json["zoom"] = options.orbit.zoom;
     json["time_s"] = options.time;
     json["alpha"] = as_read(options.alpha);
     constexpr std::array axes{"file", "x", "y", "z"};

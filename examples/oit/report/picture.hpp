@@ -7,6 +7,7 @@
 #include <cellist/opencl.hpp>
 
 #include "frame/frame.hpp"
+#include "image.hpp"
 #include "reference/reference.hpp"
 
 namespace oit {
@@ -32,15 +33,5 @@ void write_layers(const std::filesystem::path& path, const std::vector<cl_uint>&
 
 template <class Pixel>
 std::vector<Pixel> oit::side_by_side(const std::vector<Pixel>& image, const Frame& frame) {
-    const auto width = static_cast<std::size_t>(frame.width());
-    const auto height = static_cast<std::size_t>(frame.height());
-    std::vector<Pixel> rows;
-    rows.reserve(image.size());
-    for (std::size_t y = 0; y < height; ++y)
-        for (std::size_t eye = 0; eye < frame.views.size(); ++eye) {
-            const auto row =
-                image.begin() + static_cast<std::ptrdiff_t>((eye * height + y) * width);
-            rows.insert(rows.end(), row, row + static_cast<std::ptrdiff_t>(width));
-        }
-    return rows;
+    return support::side_by_side(image, frame.width(), frame.height(), frame.views.size());
 }

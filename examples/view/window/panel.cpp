@@ -1,0 +1,183 @@
+#include "window/panel.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cfloat>
+#include <string>
+#include <vector>
+
+#include <imgui.h>
+
+#include "image.hpp"
+#include "number_text.hpp"
+#include "window/control_widgets.hpp"
+
+namespace viewer {
+namespace {
+
+const ImVec4 error_colour{1, 0.55F, 0.45F, 1}, faint_colour{0.62F, 0.64F, 0.67F, 1};
+
+void heading(const char* text) {
+    ImGui::Spacing();
+    ImGui::PushStyleColor(ImGuiCol_Text, faint_colour);
+    ImGui::TextUnformatted(text);
+    ImGui::PopStyleColor();
+    ImGui::Separator();
+}
+
+void show_camera_and_time(Model& model) {
+    heading("Camera and time");
+    const support::Orbit& orbit = model.info(0).orbit;
+    ImGui::Text("view %.1f, %.1f   zoom %.2f", orbit.azimuth_degrees, orbit.elevation_degrees,
+                orbit.zoom);
+    if (ImGui::Button("reset")) model.reset_camera();
+    ImGui::SameLine();
+    ImGui::Checkbox("turn", &model.turns);
+    if (!model.moves()) return;
+    ImGui::SameLine();
+    ImGui::Checkbox("play", &model.plays);
+    auto seconds = static_cast<float>(model.time());
+    ImGui::SetNextItemWidth(-1);
+    if (ImGui::DragFloat("##time", &seconds, 0.02F, 0, 0, "time %.2f s"))
+        model.set_time(static_cast<double>(seconds));
+}
+
+void show_display(Model& model) {
+    heading("Display");
+    ImGui::Checkbox("heat map", &model.heat_map);
+    ImGui::SameLine();
+    ImGui::Checkbox("split", &model.is_split);
+    if (!model.is_split) return;
+    ImGui::SameLine();
+    auto part = static_cast<float>(model.split_at);
+    ImGui::SetNextItemWidth(-1);
+    if (ImGui::SliderFloat("##split", &part, 0, 1, "%.2f"))
+        model.split_at = static_cast<double>(part);
+}
+
+// The last frames from left to right, with the longest as the scale.
+void show_frame_times(const FrameTimes& times, const char* id) {
+    if (times.milliseconds().empty()) return;
+    const std::span<const float> ms = times.milliseconds();
+    const float longest = std::ranges::max(ms);
+    const std::optional<double> rate = times.frames_per_second();
+    const std::string text =
+        support::fixed(static_cast<double>(ms.back()), 1) + " ms" +
+        (rate ? "   " + support::fixed(*rate, 1) + " frames/s" : std::string());
+    ImGui::TextUnformatted(text.c_str());
+    const std::string scale = "0 to " + support::fixed(static_cast<double>(longest), 0) + " ms";
+    ImGui::PlotLines(id, ms.data(), static_cast<int>(ms.size()), 0, scale.c_str(), 0,
+                     1.1F * longest, {-FLT_MIN, 3.2F * ImGui::GetTextLineHeight()});
+}
+
+void show_facts(const Model& model, const Shown& shown, std::size_t side) {
+    if (!shown.sides[side].error.empty()) {
+        ImGui::PushStyleColor(ImGuiCol_Text, error_colour);
+        ImGui::TextWrapped("%s", shown.sides[side].error.c_str());
+        ImGui::PopStyleColor();
+        return;
+    }
+    for (const auto& [name, text] : model.info(side).facts) {
+        ImGui::PushStyleColor(ImGuiCol_Text, faint_colour);
+        ImGui::TextUnformatted(name.c_str());
+        ImGui::PopStyleColor();
+        ImGui::SameLine(0.32F * ImGui::GetWindowWidth());
+        ImGui::TextWrapped("%s", text.c_str());
+    }
+}
+
+ImVec4 shown_colour(const ListEntry& entry) {
+    const auto encoded = [&](int channel) {
+        return static_cast<float>(support::srgb_from_linear(entry.colour[channel]));
+    };
+    return {encoded(0), encoded(1), encoded(2), 1};
+}
+
+void show_list(const Model& model, const Shown& shown) {
+    if (!model.pixel) return;
+    heading("List");
+    ImGui::Text("pixel %d, %d", model.pixel->x, model.pixel->y);
+    const std::optional<std::vector<ListEntry>>& list = shown.sides[0].list;
+    if (!list) {
+        ImGui::TextWrapped("The pixels of this program have no lists.");
+        return;
+    }
+    ImGui::SameLine();
+    ImGui::Text("%s", support::counted(list->size(), "fragment").c_str());
+    if (list->empty()) return;
+    constexpr std::size_t most_rows = 12;
+    const float rows = static_cast<float>(std::min(list->size(), most_rows) + 1);
+    if (!ImGui::BeginTable(
+            "list", 4,
+            ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp,
+            {0, rows * ImGui::GetTextLineHeightWithSpacing() + 4}))
+        return;
+    ImGui::TableSetupScrollFreeze(0, 1);
+    for (const char* name : {"#", "depth", "colour", "alpha"}) ImGui::TableSetupColumn(name);
+    ImGui::TableHeadersRow();
+    for (std::size_t i = 0; i < list->size(); ++i) {
+        const ListEntry& entry = (*list)[i];
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        ImGui::Text("%zu", i + 1);
+        ImGui::TableNextColumn();
+        ImGui::Text("%.5f", entry.depth);
+        ImGui::TableNextColumn();
+        ImGui::PushID(static_cast<int>(i));
+        ImGui::ColorButton("##colour", shown_colour(entry),
+                           ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoDragDrop,
+                           {ImGui::GetTextLineHeight(), ImGui::GetTextLineHeight()});
+        ImGui::PopID();
+        ImGui::SameLine();
+        ImGui::Text("%.2f %.2f %.2f", entry.colour[0], entry.colour[1], entry.colour[2]);
+        ImGui::TableNextColumn();
+        ImGui::Text("%.3f", entry.alpha);
+        if (ImGui::IsItemHovered())
+            ImGui::SetTooltip("%s, samples %x", entry.blend.c_str(), entry.coverage);
+    }
+    ImGui::EndTable();
+}
+
+void show_frames(const Model& model, const Shown& shown) {
+    const std::size_t sides = model.is_split ? 2 : 1;
+    for (std::size_t side = 0; side < sides; ++side) {
+        heading(sides == 1 ? "Frames" : side == 0 ? "Frames of the left" : "Frames of the right");
+        if (shown.sides[side].error.empty())
+            show_frame_times(model.times(side), side == 0 ? "##left" : "##right");
+        show_facts(model, shown, side);
+    }
+    if (shown.progress >= 0)
+        ImGui::ProgressBar(static_cast<float>(shown.progress), {-FLT_MIN, 0}, "working");
+}
+
+}  // namespace
+
+void show_panel(Model& model, const Shown& shown, float width) {
+    ImGui::SetNextWindowPos({0, 0});
+    ImGui::SetNextWindowSize({width, ImGui::GetIO().DisplaySize.y});
+    ImGui::Begin("panel", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus);
+    const float foot = 2 * ImGui::GetFrameHeightWithSpacing() + ImGui::GetTextLineHeight();
+    ImGui::BeginChild("settings", {0, -foot});
+    show_scene(model);
+    show_controls(model);
+    show_camera_and_time(model);
+    show_display(model);
+    show_frames(model, shown);
+    show_list(model, shown);
+    ImGui::EndChild();
+    ImGui::Separator();
+    if (ImGui::Button("save picture")) model.wishes.save = true;
+    ImGui::SameLine();
+    if (ImGui::Button("copy command")) model.wishes.copy = true;
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", model.command_line().c_str());
+    ImGui::PushStyleColor(ImGuiCol_Text, faint_colour);
+    ImGui::TextUnformatted(!model.status.empty() ? model.status.c_str()
+                           : shown.is_drawing    ? "drawing"
+                                                 : "cellist-view --help lists the keys");
+    ImGui::PopStyleColor();
+    ImGui::End();
+}
+
+}  // namespace viewer
