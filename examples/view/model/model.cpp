@@ -4,10 +4,12 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <string_view>
 #include <utility>
 
 #include "camera_options.hpp"
+#include "files.hpp"
 #include "input_error.hpp"
 #include "number_text.hpp"
 
@@ -36,9 +38,11 @@ Model::Model(const Program& program, Arguments arguments)
         files_.push_back(arguments_.scene);
 }
 
-std::string Model::scene_name() const {
+std::string Model::scene_name(const std::vector<std::string>& scene) {
     std::string name;
-    for (const std::string& part : arguments_.scene) name += (name.empty() ? "" : " ") + part;
+    for (const std::string& part : scene)
+        name += (name.empty() ? "" : " + ") +
+                support::text_of(std::filesystem::path(part).filename());
     return name;
 }
 

@@ -21,8 +21,9 @@ public:
     // ---- what is drawn
     [[nodiscard]] const Program& program() const { return *program_; }
     [[nodiscard]] const Arguments& arguments() const { return arguments_; }
-    /// The scene of a command line in one text.
-    [[nodiscard]] std::string scene_name() const;
+    /// The scene of a command line in one text, files without their folders.
+    [[nodiscard]] static std::string scene_name(const std::vector<std::string>& scene);
+    [[nodiscard]] std::string scene_name() const { return scene_name(arguments_.scene); }
     /// Mesh files that were given on the command line, each an entry of its own.
     [[nodiscard]] const std::vector<std::vector<std::string>>& files() const { return files_; }
     /// Changes program and scene. Keeps options that do not belong to the scene.

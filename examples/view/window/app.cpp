@@ -19,6 +19,8 @@ constexpr float panel_units = 360;
 // A size that changes is followed when it has stayed for this time.
 constexpr double resize_delay_s = 0.15;
 
+constexpr int most_repeats = 3;
+
 // The first name that no file has: view-1.png, view-2.png, ...
 std::string free_name() {
     std::error_code error;
@@ -50,10 +52,9 @@ void App::run() {
         fulfil_wishes();
         animate();
         send_request();
-        // A script goes on at once; what ImGui animates needs some frames after each input.
-        window_.wait_events(script_.empty() ? 0.1 : 0.005);
+        window_.wait_events(script_.empty() ? 0.03 : 0.005);
         take_answers();
-        draw_window();
+        if (has_changed()) draw_window();
     }
     window_.hide();
 }
@@ -71,21 +72,38 @@ void App::animate() {
 void App::send_request() {
     if (picture_size_.first == 0) return;
     Request request = model_.request();
-    if (sent_ == request) return;
+    if (sent_ == request) {
+        // The first frames of new settings take longer, as buffers find their sizes.
+        if (!is_shown_ || repeats_ == most_repeats || !script_.empty()) return;
+        ++repeats_;
+    } else {
+        repeats_ = 0;
+    }
     sent_ = request;
     is_shown_ = false;
     thread_.draw(std::move(request));
+}
+
+bool App::has_changed() {
+    const double now = now_s();
+    if (window_.take_input()) changed_s_ = now;
+    // ImGui needs some frames after each input.
+    return std::exchange(is_stale_, false) || now < changed_s_ + 0.3;
 }
 
 void App::take_answers() {
     for (std::string& message : thread_.take_messages()) {
         std::cout << message << std::endl;
         model_.status = std::move(message);
+        is_stale_ = true;
     }
-    shown_.progress = thread_.progress();
+    const bool was_drawing = shown_.is_drawing;
     shown_.is_drawing = !thread_.is_idle();
+    if (std::exchange(shown_.progress, thread_.progress()) != shown_.progress) is_stale_ = true;
+    if (was_drawing != shown_.is_drawing && !model_.is_animated()) is_stale_ = true;
     std::optional<Drawn> drawn = thread_.take();
     if (!drawn) return;
+    is_stale_ = true;
     ++answers_;
     model_.take(*drawn, now_s());
     for (std::size_t i = 0; i < drawn->sides.size(); ++i) {
@@ -97,6 +115,7 @@ void App::take_answers() {
         shown_.sides[i] = std::move(side);
     }
     shown_.request = std::move(drawn->request);
+    is_shown_ = sent_ && shown_.request == *sent_;
 }
 
 float App::panel_width() const { return model_.shows_panel ? panel_units * window_.scale() : 0; }
@@ -132,7 +151,6 @@ void App::draw_window() {
             window_.write_screenshot(path);
             std::cout << "saved " << support::text_of(path) << std::endl;
         });
-    is_shown_ = sent_ && shown_.request == *sent_;
 }
 
 void App::fulfil_wishes() {
@@ -157,7 +175,8 @@ void App::copy_command_line() {
 bool App::is_settled() const {
     if (now_s() < script_resumes_s_ || answers_ < frames_wanted_) return false;
     if (picture_size_ != wanted_picture_size() || !screenshot_.empty()) return false;
-    return model_.is_animated() || (is_shown_ && thread_.is_idle());
+    if (model_.is_animated()) return true;
+    return is_shown_ && sent_ == model_.request() && thread_.is_idle();
 }
 
 void App::run_script() {
@@ -167,6 +186,7 @@ void App::run_script() {
         const ScriptCommand command = std::move(script_.front());
         script_.pop_front();
         run_command(command);
+        is_stale_ = true;
         // The next command finds what this one has changed.
         if (sent_ != model_.request() || command.name == "resize") return;
     }

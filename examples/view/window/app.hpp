@@ -29,6 +29,8 @@ private:
     void send_request();
     void take_answers();
     void follow_window_size();
+    /// Whether the window must be drawn again.
+    [[nodiscard]] bool has_changed();
     void draw_window();
     void fulfil_wishes();
     void save(const std::string& path);
@@ -49,9 +51,12 @@ private:
     Shown shown_;
     std::deque<ScriptCommand> script_;
     std::optional<Request> sent_;
+    int repeats_ = 0;  // of the same request
     std::pair<int, int> picture_size_, last_size_;
     double size_changed_s_ = 0, advanced_s_ = 0;
-    bool is_shown_ = false;          // the window shows the last answer
+    bool is_shown_ = false;          // the last answer is that of the last request
+    bool is_stale_ = true;           // the window shows what was before
+    double changed_s_ = 0;           // time of the last input
     std::size_t answers_ = 0;        // that were taken
     std::size_t frames_wanted_ = 0;  // of answers_, for the script
     double script_resumes_s_ = 0;

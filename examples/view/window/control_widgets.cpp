@@ -79,8 +79,7 @@ void show_widget(Model& model, const Control& control, std::size_t side, float w
 
 void show_scene_choice(Model& model, const Program& program,
                        const std::vector<std::string>& scene) {
-    std::string name;
-    for (const std::string& part : scene) name += (name.empty() ? "" : " ") + part;
+    const std::string name = Model::scene_name(scene);
     const bool is_shown = &model.program() == &program && model.arguments().scene == scene;
     ImGui::PushID(&program);
     if (ImGui::Selectable(name.c_str(), is_shown)) model.show(program, scene);

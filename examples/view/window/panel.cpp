@@ -66,8 +66,10 @@ void show_frame_times(const FrameTimes& times, const char* id) {
         (rate ? "   " + support::fixed(*rate, 1) + " frames/s" : std::string());
     ImGui::TextUnformatted(text.c_str());
     const std::string scale = "0 to " + support::fixed(static_cast<double>(longest), 0) + " ms";
-    ImGui::PlotLines(id, ms.data(), static_cast<int>(ms.size()), 0, scale.c_str(), 0,
-                     1.1F * longest, {-FLT_MIN, 3.2F * ImGui::GetTextLineHeight()});
+    std::array<float, FrameTimes::most> bars{};
+    std::ranges::copy_backward(ms, bars.end());
+    ImGui::PlotHistogram(id, bars.data(), static_cast<int>(bars.size()), 0, scale.c_str(), 0,
+                         1.1F * longest, {-FLT_MIN, 3.2F * ImGui::GetTextLineHeight()});
 }
 
 void show_facts(const Model& model, const Shown& shown, std::size_t side) {
@@ -94,7 +96,7 @@ ImVec4 shown_colour(const ListEntry& entry) {
 }
 
 void show_list(const Model& model, const Shown& shown) {
-    if (!model.pixel) return;
+    if (!model.pixel || !shown.sides[0].error.empty()) return;
     heading("List");
     ImGui::Text("pixel %d, %d", model.pixel->x, model.pixel->y);
     const std::optional<std::vector<ListEntry>>& list = shown.sides[0].list;

@@ -41,13 +41,6 @@ std::string name_of_key(int key, int scancode) {
     return name == nullptr ? "" : name;
 }
 
-void handle_key(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
-    const auto* self = static_cast<const Window*>(glfwGetWindowUserPointer(window));
-    const bool has_modifier = (modifiers & (GLFW_MOD_CONTROL | GLFW_MOD_ALT)) != 0;
-    if (action == GLFW_RELEASE || has_modifier || ImGui::GetIO().WantTextInput) return;
-    if (self->on_key) self->on_key(name_of_key(key, scancode));
-}
-
 void load_font(float scale) {
     ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
     std::error_code error;
@@ -110,7 +103,22 @@ Window::Window(const std::string& title, int width, int height) {
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
     glfwSetWindowUserPointer(window_, this);
-    glfwSetKeyCallback(window_, handle_key);
+    // ImGui calls these before its own.
+    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int scancode, int action,
+                                   int mods) {
+        note_input(window);
+        static_cast<Window*>(glfwGetWindowUserPointer(window))->press(key, scancode, action, mods);
+    });
+    glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned) { note_input(window); });
+    glfwSetCursorPosCallback(window_,
+                             [](GLFWwindow* window, double, double) { note_input(window); });
+    glfwSetCursorEnterCallback(window_, [](GLFWwindow* window, int) { note_input(window); });
+    glfwSetMouseButtonCallback(window_,
+                               [](GLFWwindow* window, int, int, int) { note_input(window); });
+    glfwSetScrollCallback(window_, [](GLFWwindow* window, double, double) { note_input(window); });
+    glfwSetFramebufferSizeCallback(window_,
+                                   [](GLFWwindow* window, int, int) { note_input(window); });
+    glfwSetWindowRefreshCallback(window_, [](GLFWwindow* window) { note_input(window); });
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;
@@ -128,12 +136,17 @@ Window::~Window() {
     glfwTerminate();
 }
 
-void Window::wait_events(double seconds) {
-    if (seconds > 0)
-        glfwWaitEventsTimeout(seconds);
-    else
-        glfwPollEvents();
+void Window::note_input(GLFWwindow* window) {
+    static_cast<Window*>(glfwGetWindowUserPointer(window))->has_input_ = true;
 }
+
+void Window::press(int key, int scancode, int action, int modifiers) {
+    const bool has_modifier = (modifiers & (GLFW_MOD_CONTROL | GLFW_MOD_ALT)) != 0;
+    if (action == GLFW_RELEASE || has_modifier || ImGui::GetIO().WantTextInput) return;
+    if (on_key) on_key(name_of_key(key, scancode));
+}
+
+void Window::wait_events(double seconds) { glfwWaitEventsTimeout(seconds); }
 
 void Window::wake() { glfwPostEmptyEvent(); }
 

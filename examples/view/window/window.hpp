@@ -43,9 +43,12 @@ public:
 
     /// Called with the name of a key that is pressed: "a", "space", "left" and so on.
     std::function<void(const std::string&)> on_key;
+    void press(int key, int scancode, int action, int modifiers);
 
     /// Waits for input, wake() or this time, then handles all input.
     void wait_events(double seconds);
+    /// Whether there was input since the last call.
+    [[nodiscard]] bool take_input() { return std::exchange(has_input_, false); }
     /// Ends wait_events(). May be called on any thread.
     static void wake();
     /// Draws the window with the calls of ImGui that `draw` makes. `before_swap` can read it.
@@ -68,7 +71,10 @@ public:
     void write_screenshot(const std::string& path) const;
 
 private:
+    static void note_input(GLFWwindow* window);
+
     GLFWwindow* window_ = nullptr;
+    bool has_input_ = false;
 };
 
 }  // namespace viewer
