@@ -74,7 +74,8 @@ void App::send_request() {
     Request request = model_.request();
     if (sent_ == request) {
         // The first frames of new settings take longer, as buffers find their sizes.
-        if (!is_shown_ || repeats_ == most_repeats || !script_.empty()) return;
+        const bool repeats = script_.empty() && repeats_ < most_repeats;
+        if (!is_shown_ || !(repeats || answers_ < frames_wanted_)) return;
         ++repeats_;
     } else {
         repeats_ = 0;

@@ -69,7 +69,7 @@ void show_frame_times(const FrameTimes& times, const char* id) {
     std::array<float, FrameTimes::most> bars{};
     std::ranges::copy_backward(ms, bars.end());
     ImGui::PlotHistogram(id, bars.data(), static_cast<int>(bars.size()), 0, scale.c_str(), 0,
-                         1.1F * longest, {-FLT_MIN, 3.2F * ImGui::GetTextLineHeight()});
+                         1.1F * longest, {ImGui::GetContentRegionAvail().x, 3.2F * ImGui::GetTextLineHeight()});
 }
 
 void show_facts(const Model& model, const Shown& shown, std::size_t side) {
