@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <exception>
 #include <new>
 #include <tuple>
@@ -13,12 +14,30 @@
 #include "viewer_kernels.hpp"
 
 namespace viewer {
+namespace {
+
+constexpr int screen_steps = 4096;
+
+std::vector<cl_uchar> encoded_steps() {
+    std::vector<cl_uchar> bytes;
+    for (int step = 0; step < screen_steps; ++step) {
+        const double root = static_cast<double>(step) / (screen_steps - 1);
+        bytes.push_back(
+            static_cast<cl_uchar>(std::lround(255 * support::srgb_from_linear(root * root))));
+    }
+    return bytes;
+}
+
+}  // namespace
+
 SideDrawer::SideDrawer(const Studio& studio)
     : studio_(studio),
       to_bytes_(studio.device,
-                cellist::Source{.text = std::string(kernels::screen_bytes_cl),
+                cellist::Source{.text = "#define SCREEN_STEPS " + std::to_string(screen_steps) +
+                                        "\n" + std::string(kernels::screen_bytes_cl),
                                 .file_name = "screen_bytes.cl"},
-                "screen_bytes") {}
+                "screen_bytes"),
+      encoded_(studio.device, encoded_steps()) {}
 
 DrawnSide SideDrawer::draw(const Request& request, std::size_t side) {
     DrawnSide drawn;
@@ -59,8 +78,9 @@ void SideDrawer::show_picture(DrawnSide& drawn) {
     const cellist::Buffer<cl_float4>& image = instrument_->image();
     const auto [width, height] = instrument_->size();
     if (!bytes_ || bytes_->size() != image.size()) bytes_.emplace(studio_.device, image.size());
-    to_bytes_.run(cellist::Range::padded(image.size(), 64), image, static_cast<cl_uint>(width),
-                  static_cast<cl_uint>(height), static_cast<cl_uint>(instrument_->eyes()), *bytes_);
+    to_bytes_.run(cellist::Range::padded(image.size(), 64), image, encoded_,
+                  static_cast<cl_uint>(width), static_cast<cl_uint>(height),
+                  static_cast<cl_uint>(instrument_->eyes()), *bytes_);
     drawn.rgba = bytes_->download();
 }
 

@@ -31,6 +31,7 @@ private:
 
     const Studio& studio_;
     cellist::Kernel to_bytes_;
+    cellist::Buffer<cl_uchar> encoded_;  ///< see screen_bytes.cl
     const Program* program_ = nullptr;
     std::unique_ptr<Instrument> instrument_;
     bool has_picture_ = false;
