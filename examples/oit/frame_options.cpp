@@ -185,24 +185,6 @@ std::string meant_scene(const std::string& text) {
     return support::did_you_mean(text, names);
 }
 
-// The largest buffers of a frame: image and opaque colour with 16 bytes a sample.
-void check_size(const FrameOptions& options, const cellist::Device& device) {
-    const std::string size =
-        "--size " + std::to_string(options.width) + "x" + std::to_string(options.height);
-    const std::uint64_t bytes = 16 * static_cast<std::uint64_t>(options.width) *
-                                static_cast<std::uint64_t>(options.height) *
-                                static_cast<std::uint64_t>(options.quality.samples) *
-                                (options.eye_separation ? 2 : 1);
-    const std::uint64_t limit = device.info().max_allocation_bytes;
-    if (bytes > limit)
-        throw InputError(size + " needs an image of " + std::to_string(bytes) +
-                         " bytes, this device allocates at most " + std::to_string(limit) +
-                         " at once");
-    if (options.width > RASTER_SIDE_MAX || options.height > RASTER_SIDE_MAX)
-        throw InputError(size + ": each side has at most " + std::to_string(RASTER_SIDE_MAX) +
-                         " pixels");
-}
-
 void check_scene(const FrameOptions& options) {
     const std::vector<std::string> arguments = arguments_of(options);
     for (const std::string& argument : arguments) {
@@ -338,6 +320,24 @@ void add_frame_options(support::CommandLine& line, FrameOptions& options) {
         check_scene(options);
         refuse_idle_options(line, options);
     });
+}
+
+// The largest buffers of a frame: image and opaque colour with 16 bytes a sample.
+void check_size(const FrameOptions& options, const cellist::Device& device) {
+    const std::string size =
+        "--size " + std::to_string(options.width) + "x" + std::to_string(options.height);
+    const std::uint64_t bytes = 16 * static_cast<std::uint64_t>(options.width) *
+                                static_cast<std::uint64_t>(options.height) *
+                                static_cast<std::uint64_t>(options.quality.samples) *
+                                (options.eye_separation ? 2 : 1);
+    const std::uint64_t limit = device.info().max_allocation_bytes;
+    if (bytes > limit)
+        throw InputError(size + " needs an image of " + std::to_string(bytes) +
+                         " bytes, this device allocates at most " + std::to_string(limit) +
+                         " at once");
+    if (options.width > RASTER_SIDE_MAX || options.height > RASTER_SIDE_MAX)
+        throw InputError(size + ": each side has at most " + std::to_string(RASTER_SIDE_MAX) +
+                         " pixels");
 }
 
 cellist::Device choose_device(const FrameOptions& options) {

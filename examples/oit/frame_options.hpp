@@ -55,6 +55,9 @@ void check_outputs(const FrameOptions& options, std::span<const support::NamedFi
 /// For the end of a help text: all methods and scenes.
 [[nodiscard]] std::string help_on_tables();
 
+/// Throws InputError where the device cannot hold an image of the options' size.
+void check_size(const FrameOptions& options, const cellist::Device& device);
+
 /// The device that the options ask for, or Device::choose(). Throws InputError where it cannot hold
 /// an image of their size.
 [[nodiscard]] cellist::Device choose_device(const FrameOptions& options);

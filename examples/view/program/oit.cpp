@@ -40,6 +40,7 @@ public:
 
     PictureInfo draw(const Arguments& arguments) override {
         const oit::Options options = parse_with(arguments, oit_command, oit::parse_options);
+        oit::check_size(options, studio_.device);
         const Arguments fixed = arguments.without({"--view", "--zoom", "--time"});
         const auto base = loaded_scenes().get(scene_key(arguments), [&] {
             oit::FrameOptions still = options;

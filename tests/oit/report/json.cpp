@@ -38,6 +38,7 @@ const std::vector<Row> frame_rows{
     {"--depth-range", "--samples 4 --depth-range", "/depth_range", true},
     {"--depth-scale", "--depth-scale reversed", "/depth_scale", "reversed"},
     {"--view", "--view 10,20.5", "/view", {10.0, 20.5}},
+    {"--zoom", "--zoom 2.5", "/zoom", 2.5},
     {"--stereo", "--stereo 0.1", "/stereo", 0.1},
     {"--time", "--time 1.5", "/time_s", 1.5},
     {"--opaque-floor", "--opaque-floor", "/opaque_floor", true},
