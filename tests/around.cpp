@@ -348,9 +348,9 @@ TEST_CASE("the length of a vector") {
     Kernel kernel(device(), R"(
 kernel void lengths(const float4 v, global float* found)
 {
-    found[0] = cellist_length(v.xy);
-    found[1] = cellist_length(v.xyz);
-    found[2] = cellist_length(v);
+    found[0] = cellist_norm(v.xy);
+    found[1] = cellist_norm(v.xyz);
+    found[2] = cellist_norm(v);
 }
 )",
                   "lengths");

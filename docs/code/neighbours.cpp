@@ -39,7 +39,7 @@ kernel void crowd(CELLIST_LISTS(Particle, bins), global const Particle* particle
         if (other.id == p.id) continue;
         float3 apart = cellist_minimum_image((float3)(p.x - other.x, p.y - other.y, p.z - other.z),
                                              (float3)(box));
-        if (cellist_length(apart) <= cell_size) ++count;
+        if (cellist_norm(apart) <= cell_size) ++count;
     }
     crowds[get_global_id(0)] = count;
 }
@@ -80,7 +80,7 @@ int main() {
     for (int step = 0; step < 3; ++step) {
         bins.build(bin, host.size(), particles, cell_size);
         found = bins.neighbours(
-            {.distance = "cellist_length(cellist_minimum_image((float3)("
+            {.distance = "cellist_norm(cellist_minimum_image((float3)("
                          "record.x - other.x, record.y - other.y, record.z - other.z), box.xyz))",
              .radius = cell_size,
              .values = {{"box", cl_float4{{box, box, box, 0}}}}},
@@ -105,7 +105,7 @@ int main() {
     cellist::Nearest<Particle> nearest = bins.nearest(
         queries, {.k = 16,
                   .position = "query.xyz / size",
-                  .distance = "cellist_length(cellist_minimum_image((float3)(record.x - query.x, "
+                  .distance = "cellist_norm(cellist_minimum_image((float3)(record.x - query.x, "
                               "record.y - query.y, record.z - query.z), (float3)(1.0f)))",
                   .radius = cell_size,
                   .values = {{"size", cell_size}}});

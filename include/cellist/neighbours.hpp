@@ -22,7 +22,7 @@ struct NeighbourMemory;
 struct NeighbourOptions {
     /// The distance of two records: an expression of `record` and `other` with a float value, such
     /// as "distance(record.position, other.position)". The kernel functions cellist_minimum_image,
-    /// for periodic boxes, and cellist_length serve here.
+    /// for periodic boxes, and cellist_norm serve here.
     std::string distance;
     /// The largest distance of neighbours. NaN is no distance of neighbours.
     float radius = std::numeric_limits<float>::infinity();
