@@ -10,6 +10,9 @@
 // CELLIST_RECORD, cellist_values, CELLIST_QUERY (the type of a query), CELLIST_K_MAX (at least k),
 // cellist_distance(record, query, values), cellist_query_position(query, values), and
 // CELLIST_DIMENSIONS, of the shape.
+//
+// On GPUs it also defines CELLIST_TEAM, the work-items that share a query; elsewhere each query has
+// a work-item. Barriers stand in uniform control flow.
 #include <cellist/lists.clh>
 
 // The position of a query, without components that the shape does not have.
@@ -27,6 +30,109 @@ static inline int cellist_is_nearer(CELLIST_LISTS(CELLIST_RECORD, lists), float 
     if (distance_a != distance_b) return distance_a < distance_b;
     return cellist_record_before(&cellist_get(lists, a), &cellist_get(lists, b), 0);
 }
+
+#ifdef CELLIST_TEAM
+
+// Records that a work-group collects, at least CELLIST_K_MAX + CELLIST_TEAM.
+#define CELLIST_COLLECTED 256u
+
+// The node some steps after `node`, or the end of the list.
+static inline uint cellist_skip(global const CELLIST_NODE* nodes, const CELLIST_VIEW view,
+                                uint node, uint end, uint steps) {
+    if (!cellist_has_mode(view.cellist_untyped, CELLIST_LINKED))
+        return node + min(steps, end - node);
+    for (uint i = 0; i < steps && node < end; ++i) node = cellist_next(nodes, view, node);
+    return node;
+}
+
+// Keeps the first k of the records that were collected, in order, and returns how many there are.
+// All work-items of the group call it.
+static uint cellist_keep_nearest(CELLIST_LISTS(CELLIST_RECORD, lists), uint k, uint collected,
+                                 local float* distances, local uint* nodes,
+                                 local float* kept_distances, local uint* kept_nodes) {
+    const uint item = get_local_id(0);
+    for (uint a = item; a < collected; a += CELLIST_TEAM) {
+        uint rank = 0;
+        for (uint b = 0; b < collected; ++b) {
+            if (distances[b] != distances[a])
+                rank += distances[b] < distances[a];
+            else if (b != a)
+                // Equal records stay in the order in which they were collected.
+                rank +=
+                    cellist_is_nearer(CELLIST_PASS(lists), 0, nodes[b], 0, nodes[a]) ||
+                    (b < a && !cellist_is_nearer(CELLIST_PASS(lists), 0, nodes[a], 0, nodes[b]));
+        }
+        if (rank < k) {
+            kept_distances[rank] = distances[a];
+            kept_nodes[rank] = nodes[a];
+        }
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+    const uint kept = min(collected, k);
+    for (uint n = item; n < kept; n += CELLIST_TEAM) {
+        distances[n] = kept_distances[n];
+        nodes[n] = kept_nodes[n];
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+    return kept;
+}
+
+// A work-group a query. Its work-items look at neighbouring nodes, and collect the records that may
+// be among the nearest. When there is no room for another round, they keep the first k; then only
+// records that are no further away are collected.
+kernel __attribute__((reqd_work_group_size(CELLIST_TEAM, 1, 1))) void cellist_find_nearest(
+    CELLIST_LISTS(CELLIST_RECORD, lists), global const CELLIST_QUERY* queries, uint count, uint k,
+    uint radius_cells, float radius, const cellist_values values, global uint* counts,
+    global struct CELLIST_RECORD* records, global float* distances) {
+    local float nearest[CELLIST_COLLECTED];
+    local uint nodes[CELLIST_COLLECTED];
+    local float kept_nearest[CELLIST_K_MAX];
+    local uint kept_nodes[CELLIST_K_MAX];
+    local uint collected;
+    const cellist_view lists_view = cellist_view_of(lists);
+    const uint item = get_local_id(0);
+    const uint i = get_group_id(0);
+    const CELLIST_QUERY query = queries[i];
+    if (item == 0) collected = 0;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    cellist_around around =
+        cellist_begin_around(lists_view, cellist_query_place(&query, values), radius_cells);
+    while (k > 0 && cellist_next_segment(lists_heads, lists_view, &around)) {
+        for (uint first = around.begin; first < around.end;
+             first = cellist_skip(lists_nodes, lists_typed, first, around.end, CELLIST_TEAM)) {
+            const uint node = cellist_skip(lists_nodes, lists_typed, first, around.end, item);
+            if (node < around.end) {
+                const struct CELLIST_RECORD record = cellist_get(lists, node);
+                const float distance = cellist_distance(&record, &query, values);
+                if (distance <= radius) {
+                    const uint at = atomic_inc(&collected);
+                    nearest[at] = distance;
+                    nodes[at] = node;
+                }
+            }
+            barrier(CLK_LOCAL_MEM_FENCE);
+            const uint in_use = collected;
+            barrier(CLK_LOCAL_MEM_FENCE);
+            if (in_use > CELLIST_COLLECTED - CELLIST_TEAM) {
+                const uint kept = cellist_keep_nearest(CELLIST_PASS(lists), k, in_use, nearest,
+                                                       nodes, kept_nearest, kept_nodes);
+                radius = nearest[kept - 1];
+                if (item == 0) collected = kept;
+                barrier(CLK_LOCAL_MEM_FENCE);
+            }
+        }
+        cellist_end_segment(&around);
+    }
+    const uint found = cellist_keep_nearest(CELLIST_PASS(lists), k, collected, nearest, nodes,
+                                            kept_nearest, kept_nodes);
+    if (item == 0) counts[i] = found;
+    for (uint n = item; n < found; n += CELLIST_TEAM) {
+        records[(ulong)i * k + n] = cellist_get(lists, nodes[n]);
+        distances[(ulong)i * k + n] = nearest[n];
+    }
+}
+
+#else
 
 // One work-item a query. It keeps the nearest records so far, in order.
 kernel void cellist_find_nearest(CELLIST_LISTS(CELLIST_RECORD, lists),
@@ -63,3 +169,5 @@ kernel void cellist_find_nearest(CELLIST_LISTS(CELLIST_RECORD, lists),
         distances[(ulong)i * k + n] = nearest[n];
     }
 }
+
+#endif

@@ -138,8 +138,7 @@ void check_nearest(const Lists<Photon>& lists, const Scene& scene, const std::ve
     }
 }
 
-TEST_CASE("the nearest records, with ties, fewer than k, and queries outside of the shape",
-          "[oclgrind]") {
+TEST_CASE("the nearest records, with ties, fewer than k, and queries outside of the shape") {
     CELLIST_EACH_STORAGE(storage);
     CELLIST_RANDOM(random, 500u);
     for (const std::array<bool, 4> periodic :
@@ -171,6 +170,16 @@ TEST_CASE("the lists of nearest(), and many records in one cell") {
     Lists<Photon> kept(device(), {6, 5}, {.storage = nearest(&Photon::id, 40)});
     Inserter<Photon>(kept).build(kept, few.inserts);
     check_nearest(kept, few, some_eyes(few, random), 64, 1, 1, found);
+}
+
+TEST_CASE("a few queries among more records than are collected at once", "[oclgrind]") {
+    CELLIST_EACH_STORAGE(storage);
+    CELLIST_RANDOM(random, 503u);
+    const Scene scene(330, {2, 1}, {true}, random);
+    Lists<Photon> lists(device(), {2, 1}, {.storage = storage, .periodic = scene.periodic});
+    Inserter<Photon>(lists).build(lists, scene.inserts);
+    Nearest<Photon> found;
+    check_nearest(lists, scene, {{0, 0.5F, 0.5F}, {0, -0.25F, -0.5F}, {0, nan, 0}}, 3, 4, 1, found);
 }
 
 TEST_CASE("queries that are scalars and vectors; distances that are NaN") {

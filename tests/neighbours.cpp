@@ -112,8 +112,7 @@ void check_neighbours(Lists<Dot>& lists, const Space& space, float square, Neigh
                        [&](const Dot& a, const Dot& b) { return space.square(a, b) <= square; });
 }
 
-TEST_CASE("all pairs in open and periodic space, with the same buffers in every step",
-          "[oclgrind]") {
+TEST_CASE("all pairs in open and periodic space, with the same buffers in every step") {
     CELLIST_EACH_STORAGE(storage);
     CELLIST_RANDOM(random, 400u);
     for (const Space& space : {Space{{6, 5, 4}, {}}, Space{{6, 5, 4}, {true, true, true}},
@@ -127,6 +126,16 @@ TEST_CASE("all pairs in open and periodic space, with the same buffers in every 
                 check_neighbours(lists, space, square, by_place, by_id);
         }
     }
+}
+
+TEST_CASE("a few records", "[oclgrind]") {
+    CELLIST_EACH_STORAGE(storage);
+    CELLIST_RANDOM(random, 405u);
+    const Space space{{4, 2, 1}, {true, false, false}};
+    Lists<Dot> lists(device(), space.shape(), {.storage = storage, .periodic = space.periodic});
+    Inserter<Dot>(lists).build(lists, random_dots(40, space, random));
+    Neighbours by_place, by_id;
+    check_neighbours(lists, space, 1, by_place, by_id);
 }
 
 TEST_CASE("the first search takes exactly the memory that the pairs need") {

@@ -18,6 +18,17 @@ namespace {
 
 constexpr std::uint32_t k_max = 64;
 
+/// Work-items that share a query on GPUs.
+constexpr std::size_t team = 64;
+
+bool has_teams(const DeviceInfo& device) {
+    return (device.type & CL_DEVICE_TYPE_GPU) != 0 && device.max_work_group_size >= team;
+}
+
+Range range_of(std::uint64_t queries, const DeviceInfo& device) {
+    return has_teams(device) ? Range::padded(queries * team, team) : Range::padded(queries, 16);
+}
+
 /// What `record` and `query` are.
 std::vector<Subject> subjects() {
     return {{"record", "(*cellist_record)"}, {"query", "(*cellist_query)"}};
@@ -54,10 +65,15 @@ void find_nearest(const ListsCore& lists, const NearestOptions& options,
                           .before = "(float)",
                           .subjects = subjects()}});
     program.types.add(search.types);
+    const DeviceInfo& device = lists.device()->info;
+    const std::string& record = kernels.record().name;
     const std::string definitions =
         "#define CELLIST_QUERY " + search.query_type + "\n#define CELLIST_K_MAX " +
         std::to_string(std::max(std::bit_ceil(options.k), 1U)) + "u\n#define CELLIST_DIMENSIONS " +
-        std::to_string(lists.shape().dimensions()) + "\n" + program.source;
+        std::to_string(lists.shape().dimensions()) + "\n#define CELLIST_NODE cellist_node_" +
+        record + "\n#define CELLIST_VIEW cellist_view_" + record + "\n" +
+        (has_teams(device) ? "#define CELLIST_TEAM " + std::to_string(team) + "u\n" : "") +
+        program.source;
     Arguments arguments;
     lists.add_to(arguments);
     arguments.add(search.queries);
@@ -72,7 +88,7 @@ void find_nearest(const ListsCore& lists, const NearestOptions& options,
     kernels
         .get({{"k_nearest.cl", kernels::k_nearest_cl}}, "cellist_find_nearest", lists.mode(),
              definitions, program.types)
-        .enqueue(Range::padded(search.count, 16), arguments);
+        .enqueue(range_of(search.count, device), arguments);
 }
 
 }  // namespace cellist::detail

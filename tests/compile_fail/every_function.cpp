@@ -61,7 +61,8 @@ std::size_t use(const cellist::Device& device) {
     records.upload_async(values, 0).wait();
     sum += records.download(1, 2).size() + records.download_async(1, 2).get().size();
 
-    Lists<Hit> hits(device, {4, 3}, {.storage = Storage::counted, .capacity_nodes = 7});
+    Lists<Hit> hits(device, {4, 3},
+                    {.storage = Storage::counted, .capacity_nodes = 7, .periodic = {true}});
     Lists<Photon> photons(device, {4});
     const Source source{.text = "kernel void f(CELLIST_LISTS(Hit, hits), uint n) {}"};
     Kernel kernel(device, source, "f", hits, photons, type<Corner>);
@@ -108,6 +109,18 @@ std::size_t use(const cellist::Device& device) {
     sum += hits.pack().records.size() + hits.pack(&Hit::next).records.size() +
            hits.pack(&Hit::colour).records.size() + hits.pack(&Hit::grid).records.size() +
            hits.pack(&Hit::corners).offsets.size();
+    Neighbours near = hits.neighbours({.distance = "distance(record.colour, other.colour)"});
+    near = hits.neighbours(&Hit::id,
+                           {.distance = "fabs(record.depth - other.depth) * scale",
+                            .radius = 0.5F,
+                            .radius_cells = 2,
+                            .values = {{"scale", 2.0F}}},
+                           std::move(near));
+    Nearest<Hit> first =
+        hits.nearest(numbers, {.k = 3, .position = "query", .distance = "record.depth"});
+    first = hits.nearest(records, {.position = "query.grid[0][0]", .distance = "query.depth"},
+                         std::move(first));
+    sum += near.pairs + near.indices.size() + first.records.size();
     sum += hits.validate().ok() && hits.validate_async().get().ok() ? 1U : 0U;
     hits.clear();
     Lists<Hit> moved(std::move(hits));

@@ -50,6 +50,36 @@ void read_in_a_kernel(Scene& scene) {
     }
 }
 
+/// All pairs of records whose cells have at most one cell between them.
+void neighbours(Scene& scene) {
+    const Neighbours found =
+        scene.lists.neighbours({.distance = "fabs(record.key - other.key)", .radius_cells = 2});
+    std::uint64_t pairs = 0;
+    for (const auto& [cell, record] : scene.oracle)
+        for (const auto& [near_cell, near] : scene.oracle)
+            if (record != near && std::max(cell, near_cell) - std::min(cell, near_cell) <= 2)
+                ++pairs;
+    const std::vector<cl_uint> offsets = found.offsets.download();
+    REQUIRE(found.records == scene.oracle.size());
+    REQUIRE(found.pairs == pairs);
+    REQUIRE(offsets.back() == pairs);
+}
+
+void nearest_of_queries(Scene& scene) {
+    const Buffer<cl_int> queries(scene.device, std::vector<cl_int>{0, 16, -9});
+    const Nearest<Item> found =
+        scene.lists.nearest(queries, {.k = 2, .position = "query", .distance = "record.key"});
+    const std::vector<cl_uint> counts = found.counts.download();
+    for (std::size_t query = 0; query < 3; ++query) {
+        const std::uint64_t first = std::array{0U, 15U, 1U}[query];
+        const std::uint64_t cells = query == 2 ? 0 : 2;
+        std::size_t expected = 0;
+        for (const auto& [cell, record] : scene.oracle)
+            if (cell >= first && cell < first + cells) ++expected;
+        REQUIRE(counts[query] == std::min<std::size_t>(expected, 2));
+    }
+}
+
 }  // namespace
 
 std::span<const Operation> read_operations() {
@@ -64,6 +94,8 @@ std::span<const Operation> read_operations() {
         {"validate", full, validate},
         {"read later", full, read_later, repeated},
         {"read in a kernel", full, read_in_a_kernel},
+        {"neighbours", full, neighbours},
+        {"nearest of queries", full, nearest_of_queries, repeated},
     };
     return table;
 }
