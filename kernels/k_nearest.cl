@@ -97,7 +97,7 @@ kernel __attribute__((reqd_work_group_size(CELLIST_TEAM, 1, 1))) void cellist_fi
     barrier(CLK_LOCAL_MEM_FENCE);
     cellist_around around =
         cellist_begin_around(lists_view, cellist_query_place(&query, values), radius_cells);
-    while (k > 0 && cellist_next_segment(lists_heads, lists_view, &around)) {
+    while (k > 0 && cellist_next_span(lists_heads, lists_view, &around)) {
         for (uint first = around.begin; first < around.end;
              first = cellist_skip(lists_nodes, lists_typed, first, around.end, CELLIST_TEAM)) {
             const uint node = cellist_skip(lists_nodes, lists_typed, first, around.end, item);
@@ -121,7 +121,7 @@ kernel __attribute__((reqd_work_group_size(CELLIST_TEAM, 1, 1))) void cellist_fi
                 barrier(CLK_LOCAL_MEM_FENCE);
             }
         }
-        cellist_end_segment(&around);
+        cellist_end_span(&around);
     }
     const uint found = cellist_keep_nearest(CELLIST_PASS(lists), k, collected, nearest, nodes,
                                             kept_nearest, kept_nodes);

@@ -19,18 +19,19 @@ namespace {
 constexpr std::uint32_t k_max = 64;
 
 /// Work-items that share a query on GPUs.
-constexpr std::size_t team = 64;
+constexpr std::size_t team_size = 64;
 
 bool has_teams(const DeviceInfo& device) {
-    return (device.type & CL_DEVICE_TYPE_GPU) != 0 && device.max_work_group_size >= team;
+    return (device.type & CL_DEVICE_TYPE_GPU) != 0 && device.max_work_group_size >= team_size;
 }
 
 Range range_of(std::uint64_t queries, const DeviceInfo& device) {
-    return has_teams(device) ? Range::padded(queries * team, team) : Range::padded(queries, 16);
+    return has_teams(device) ? Range::padded(queries * team_size, team_size)
+                             : Range::padded(queries, 16);
 }
 
 /// What `record` and `query` are.
-std::vector<Subject> subjects() {
+std::vector<Subject> query_subjects() {
     return {{"record", "(*cellist_record)"}, {"query", "(*cellist_query)"}};
 }
 
@@ -43,7 +44,7 @@ void check_nearest(const NearestOptions& options) {
                     ": lower k");
     check_expression(options.position);
     check_expression(options.distance);
-    check_values(options.values, subjects());
+    check_values(options.values, query_subjects());
 }
 
 void find_nearest(const ListsCore& lists, const NearestOptions& options,
@@ -57,13 +58,13 @@ void find_nearest(const ListsCore& lists, const NearestOptions& options,
                           .what = "position expression",
                           .head = "static inline int4 cellist_query_position(" + query,
                           .before = "cellist_position",
-                          .subjects = {subjects()[1]}},
+                          .subjects = {query_subjects()[1]}},
                          {.expression = options.distance,
                           .what = "distance expression",
                           .head = "static inline float cellist_distance(const struct " +
                                   kernels.record().name + "* cellist_record, " + query,
                           .before = "(float)",
-                          .subjects = subjects()}});
+                          .subjects = query_subjects()}});
     program.types.add(search.types);
     const DeviceInfo& device = lists.device()->info;
     const std::string& record = kernels.record().name;
@@ -72,7 +73,7 @@ void find_nearest(const ListsCore& lists, const NearestOptions& options,
         std::to_string(std::max(std::bit_ceil(options.k), 1U)) + "u\n#define CELLIST_DIMENSIONS " +
         std::to_string(lists.shape().dimensions()) + "\n#define CELLIST_NODE cellist_node_" +
         record + "\n#define CELLIST_VIEW cellist_view_" + record + "\n" +
-        (has_teams(device) ? "#define CELLIST_TEAM " + std::to_string(team) + "u\n" : "") +
+        (has_teams(device) ? "#define CELLIST_TEAM " + std::to_string(team_size) + "u\n" : "") +
         program.source;
     Arguments arguments;
     lists.add_to(arguments);

@@ -20,6 +20,7 @@ namespace cellist::detail {
 
 /// What one search leaves to the next.
 struct NeighbourMemory {
+    std::shared_ptr<DeviceState> device;
     ContiguousLists lists = {};
     Memory counts = {};
     Memory cells = {};
@@ -36,21 +37,21 @@ constexpr std::size_t candidates_bytes_max = 16384;
 constexpr std::size_t copied_bytes_max = 256;
 
 /// The source's definitions. A work-item has a cell if there are candidates.
-struct Program {
+struct SearchProgram {
     ExpressionProgram expressions;
     std::string definitions;
     bool has_candidates;
 };
 
-Program program_of(const RecordKernels& kernels, const NeighbourOptions& options,
-                   const std::string& index) {
+SearchProgram program_of(const RecordKernels& kernels, const NeighbourOptions& options,
+                         const std::string& index) {
     const std::vector<Subject> subjects{{"record", "(*cellist_record)"},
                                         {"other", "(*cellist_other)"}};
     check_expression(options.distance);
     check_values(options.values, subjects);
     const RecordType& record = kernels.record();
     const std::string type = "const struct " + record.name + "*";
-    Program program{
+    SearchProgram program{
         .expressions = expression_program(
             options.values, {{.expression = options.distance,
                               .what = "distance expression",
@@ -152,7 +153,7 @@ private:
     const ListsCore& lists_;
     const NeighbourOptions& options_;
     RecordKernels& kernels_;
-    Program program_;
+    SearchProgram program_;
     NeighbourMemory& memory_;
     std::uint64_t records_ = 0;
 };
@@ -161,7 +162,8 @@ private:
 
 void find_neighbours(const ListsCore& lists, const NeighbourOptions& options,
                      const std::string& index, Neighbours& found) {
-    if (!found.memory) found.memory = std::make_shared<NeighbourMemory>();
+    if (!found.memory || found.memory->device != lists.device())
+        found.memory = std::make_shared<NeighbourMemory>(lists.device());
     Search search(lists, options, index, *found.memory);
     const std::uint64_t pairs = search.count();
     if (pairs > std::numeric_limits<cl_uint>::max())

@@ -11,7 +11,7 @@ namespace {
 
 /// The expression reads the record through a pointer. A private copy of a large record would take
 /// too much memory.
-const std::vector<Subject>& subjects() {
+const std::vector<Subject>& key_subjects() {
     static const std::vector<Subject> all{{"record", "(*cellist_sort_at)"}};
     return all;
 }
@@ -20,7 +20,7 @@ const std::vector<Subject>& subjects() {
 
 void check_key(const SortKey& key) {
     check_expression(key.expression);
-    check_values(key.values, subjects());
+    check_values(key.values, key_subjects());
 }
 
 ExpressionProgram key_program(const SortKey& key) {
@@ -33,7 +33,7 @@ ExpressionProgram key_program(const SortKey& key) {
                   " cellist_sort_key(global const struct CELLIST_RECORD* cellist_sort_at,\n    ",
           .before =
               "(" + type + ")" + (key.order == Order::descending ? "~" : "") + "cellist_order",
-          .subjects = subjects()}});
+          .subjects = key_subjects()}});
 }
 
 bool is_member(const SortKey& key) {
