@@ -9,6 +9,7 @@
 #include "files.hpp"
 #include "input_error.hpp"
 #include "number_text.hpp"
+#include "window/list_window.hpp"
 #include "window/panel.hpp"
 #include "window/picture_area.hpp"
 
@@ -145,6 +146,7 @@ void App::draw_window() {
             const float width = panel_width();
             show_picture_area(model_, shown_, width);
             if (model_.shows_panel) show_panel(model_, shown_, width);
+            show_list(model_, shown_);
         },
         [&] {
             if (screenshot_.empty()) return;

@@ -8,7 +8,6 @@
 
 #include <imgui.h>
 
-#include "image.hpp"
 #include "number_text.hpp"
 #include "window/control_widgets.hpp"
 
@@ -69,7 +68,8 @@ void show_frame_times(const FrameTimes& times, const char* id) {
     std::array<float, FrameTimes::most> bars{};
     std::ranges::copy_backward(ms, bars.end());
     ImGui::PlotHistogram(id, bars.data(), static_cast<int>(bars.size()), 0, scale.c_str(), 0,
-                         1.1F * longest, {ImGui::GetContentRegionAvail().x, 3.2F * ImGui::GetTextLineHeight()});
+                         1.1F * longest,
+                         {ImGui::GetContentRegionAvail().x, 3.2F * ImGui::GetTextLineHeight()});
 }
 
 void show_facts(const Model& model, const Shown& shown, std::size_t side) {
@@ -86,58 +86,6 @@ void show_facts(const Model& model, const Shown& shown, std::size_t side) {
         ImGui::SameLine(0.32F * ImGui::GetWindowWidth());
         ImGui::TextWrapped("%s", text.c_str());
     }
-}
-
-ImVec4 shown_colour(const ListEntry& entry) {
-    const auto encoded = [&](int channel) {
-        return static_cast<float>(support::srgb_from_linear(entry.colour[channel]));
-    };
-    return {encoded(0), encoded(1), encoded(2), 1};
-}
-
-void show_list(const Model& model, const Shown& shown) {
-    if (!model.pixel || !shown.sides[0].error.empty()) return;
-    heading("List");
-    ImGui::Text("pixel %d, %d", model.pixel->x, model.pixel->y);
-    const std::optional<std::vector<ListEntry>>& list = shown.sides[0].list;
-    if (!list) {
-        ImGui::TextWrapped("The pixels of this program have no lists.");
-        return;
-    }
-    ImGui::SameLine();
-    ImGui::Text("%s", support::counted(list->size(), "fragment").c_str());
-    if (list->empty()) return;
-    constexpr std::size_t most_rows = 12;
-    const float rows = static_cast<float>(std::min(list->size(), most_rows) + 1);
-    if (!ImGui::BeginTable(
-            "list", 4,
-            ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp,
-            {0, rows * ImGui::GetTextLineHeightWithSpacing() + 4}))
-        return;
-    ImGui::TableSetupScrollFreeze(0, 1);
-    for (const char* name : {"#", "depth", "colour", "alpha"}) ImGui::TableSetupColumn(name);
-    ImGui::TableHeadersRow();
-    for (std::size_t i = 0; i < list->size(); ++i) {
-        const ListEntry& entry = (*list)[i];
-        ImGui::TableNextRow();
-        ImGui::TableNextColumn();
-        ImGui::Text("%zu", i + 1);
-        ImGui::TableNextColumn();
-        ImGui::Text("%.5f", entry.depth);
-        ImGui::TableNextColumn();
-        ImGui::PushID(static_cast<int>(i));
-        ImGui::ColorButton("##colour", shown_colour(entry),
-                           ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoDragDrop,
-                           {ImGui::GetTextLineHeight(), ImGui::GetTextLineHeight()});
-        ImGui::PopID();
-        ImGui::SameLine();
-        ImGui::Text("%.2f %.2f %.2f", entry.colour[0], entry.colour[1], entry.colour[2]);
-        ImGui::TableNextColumn();
-        ImGui::Text("%.3f", entry.alpha);
-        if (ImGui::IsItemHovered())
-            ImGui::SetTooltip("%s, samples %x", entry.blend.c_str(), entry.coverage);
-    }
-    ImGui::EndTable();
 }
 
 void show_frames(const Model& model, const Shown& shown) {
@@ -167,7 +115,6 @@ void show_panel(Model& model, const Shown& shown, float width) {
     show_camera_and_time(model);
     show_display(model);
     show_frames(model, shown);
-    show_list(model, shown);
     ImGui::EndChild();
     ImGui::Separator();
     if (ImGui::Button("save picture")) model.wishes.save = true;
