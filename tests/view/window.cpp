@@ -1,6 +1,5 @@
 // The window, driven by scripts under Xvfb with Mesa's software OpenGL.
 #include <cstdlib>
-#include <limits>
 
 #include <stb_image.h>
 
@@ -9,21 +8,28 @@
 #include "support/catch.hpp"
 #include "support/errors.hpp"
 #include "support/skip.hpp"
+#include "view/support/display.hpp"
 
 namespace cellist::test {
 namespace {
 
-constexpr const char* on_a_display =
-    "LIBGL_ALWAYS_SOFTWARE=1 xvfb-run --auto-servernum --server-args='-screen 0 1280x900x24'";
+// What stands before a program that opens a window; empty where there is no Xvfb.
+const std::string& on_a_display() {
+    static const Display display;
+    static const std::string environment =
+        display.name().empty()
+            ? std::string()
+            : "LIBGL_ALWAYS_SOFTWARE=1 WAYLAND_DISPLAY= DISPLAY=" + display.name();
+    return environment;
+}
 
 // Why no window can be opened here; empty where it can.
 const std::string& no_window() {
     static const std::string reason = [] {
-        if (std::system("command -v xvfb-run >/dev/null") != 0)
-            return std::string("there is no xvfb-run (xvfb)");
+        if (on_a_display().empty()) return std::string("there is no Xvfb (xvfb)");
         const Program program(CELLIST_VIEW_PROGRAM);
         (void)program.folder().write("s.txt", "quit now\n");
-        const ProgramResult result = program.run("smoke --script s.txt", on_a_display);
+        const ProgramResult result = program.run("smoke --script s.txt", on_a_display());
         return result.exit_code == 0 ? std::string() : "no window: " + result.error;
     }();
     return reason;
@@ -32,7 +38,7 @@ const std::string& no_window() {
 ProgramResult run_script(const Program& program, const std::string& arguments,
                          const std::string& script) {
     (void)program.folder().write("s.txt", script);
-    return program.run(arguments + " --script s.txt", on_a_display);
+    return program.run(arguments + " --script s.txt", on_a_display());
 }
 
 struct Bytes {
@@ -106,7 +112,7 @@ TEST_CASE("a script that cannot be used is an error in one line") {
     if (!no_window().empty()) CELLIST_SKIP(no_window());
     const Program program(CELLIST_VIEW_PROGRAM);
     (void)program.folder().write("s.txt", "orbit 3\n");
-    program.require_refused("smoke --script s.txt", "script line 1, orbit", on_a_display);
+    program.require_refused("smoke --script s.txt", "script line 1, orbit", on_a_display());
     program.require_refused("smoke --script nosuch.txt", "nosuch.txt");
     program.require_refused("smoke --josn a", "no option of the viewer");
     program.require_refused("smoke", "no display", "env -u DISPLAY -u WAYLAND_DISPLAY");
