@@ -179,6 +179,7 @@ int main(int argc, char** argv) try {
     add_read(suite);
     add_storage(suite);
     add_sort(suite);
+    add_sort_ties(suite);
     add_nearest(suite);
     add_pack(suite);
     add_clear(suite);

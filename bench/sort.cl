@@ -10,3 +10,9 @@ kernel void count_unsorted(CELLIST_LISTS(RECORD, lists), volatile global uint* u
         before = key;
     }
 }
+
+// Leaves `distinct` different keys in each list; one work-item a cell.
+kernel void tie_keys(CELLIST_LISTS(RECORD, lists), uint distinct) {
+    const uint cell = get_global_id(0);
+    cellist_for_each(lists, cell, node) cellist_get(lists, node).key %= distinct;
+}

@@ -20,6 +20,10 @@
 //   cellist_values             a struct of the values that the expression of the key uses
 //   cellist_sort_key(pointer to a record, values)
 //                              maps the key to an unsigned integer of the same order
+//   cellist_sort_key_bytes()   the size of the key's type: a key of up to 4 bytes has 32 bits
+//   cellist_sort_word(pointer to a record, i)
+//                              the i-th of the 32-bit words that decide between equal keys, in the
+//                              order of the members; 0 after the last word
 //
 // If the user's expression is not an order, its value may differ from call to call. No record is
 // lost then: the code that moves records compares each pair once, or reads stored keys.
@@ -200,32 +204,6 @@ static inline void cellist_sort_order(const uint* ranks, uint length, uint membe
     cellist_sort_each_run(n, at, member, length) {
         for (uint i = 0; i < CELLIST_SORT_WIDTH && at + i < length; ++i)
             order[ranks[n * CELLIST_SORT_WIDTH + i]] = (uchar)(at + i);
-    }
-}
-
-// The same where keys may be equal: records with equal keys come in the order of records, and equal
-// records stay in theirs. Record i is nodes[first + index[i]], or nodes[first + i] without an
-// index.
-static void cellist_sort_order_equal(global const cellist_sort_node* nodes, uint first,
-                                     CELLIST_SORT_SHARED const uint* index,
-                                     CELLIST_SORT_SHARED const cellist_sort_bits* keys, uint length,
-                                     uint member, CELLIST_SORT_SHARED uchar* order) {
-    cellist_sort_each_run(n, at, member, length) {
-        for (uint i = at; i < at + CELLIST_SORT_WIDTH && i < length; ++i) {
-            const cellist_sort_bits key = keys[i];
-            global const struct CELLIST_RECORD* own =
-                &cellist_sort_record(nodes[first + (index ? index[i] : i)]);
-            uint rank = 0;
-            for (uint j = 0; j < length; ++j) {
-                rank += keys[j] < key;
-                if (keys[j] != key || j == i) continue;
-                global const struct CELLIST_RECORD* other =
-                    &cellist_sort_record(nodes[first + (index ? index[j] : j)]);
-                rank += cellist_record_before(other, own, 0) ||
-                        (j < i && !cellist_record_before(own, other, 0));
-            }
-            order[rank] = (uchar)i;
-        }
     }
 }
 

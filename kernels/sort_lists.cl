@@ -96,10 +96,13 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
 #endif
     cellist_sort_barrier();
 
+    const cellist_sort_ties known_ties = cellist_sort_known_ties(state);
+    cellist_sort_ties ties = known_ties;
     for (uint round = 0; round < CELLIST_SORT_LISTS / CELLIST_SORT_TEAMS; ++round) {
         const uint list = item / CELLIST_SORT_TEAM + round * CELLIST_SORT_TEAMS;
         const uint member = item % CELLIST_SORT_TEAM;
         const uint row = list * CELLIST_SORT_STRIDE;
+        const int expects_ties = cellist_sort_expects_ties(&ties);
         uint length = 0;
 #if CELLIST_MODES == CELLIST_LINKED
         if (list < own && lengths[list] != CELLIST_NONE && total != CELLIST_NONE) {
@@ -110,6 +113,7 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
         for (uint i = member; i < length; i += CELLIST_SORT_TEAM)
             keys[row + i] =
                 cellist_sort_key(&cellist_sort_record(own_nodes[index[row + i]]), values);
+#define CELLIST_SORT_OWN own_nodes, 0, index + row
 #else
         uint first = 0;
         if (list < own) {
@@ -126,24 +130,25 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
         }
         for (uint i = member; i < length; i += CELLIST_SORT_TEAM)
             keys[row + i] = cellist_sort_key(&cellist_sort_record(own_nodes[first + i]), values);
+#define CELLIST_SORT_OWN own_nodes, first, 0
 #endif
         cellist_sort_barrier();
         uint ranks[CELLIST_SORT_RUNS * CELLIST_SORT_WIDTH];
-        if (length > 0)
+        if (length > 0 && !expects_ties)
             cellist_sort_add(&sums[list], cellist_sort_rank(keys + row, length, member, ranks));
 #if CELLIST_SORT_ITEMS > 1
         if (member == 0 && length > 0) atomic_inc(&in_class[cellist_sort_class(length)]);
 #endif
         cellist_sort_barrier();
-        if (length > 0 && cellist_sort_unique(sums[list], length))
+        const int unique = !expects_ties && cellist_sort_unique(sums[list], length);
+        if (!expects_ties) cellist_sort_note_ties(&ties, length, unique);
+        if (unique) {
             cellist_sort_order(ranks, length, member, order + row);
-        else
-#if CELLIST_MODES == CELLIST_LINKED
-            cellist_sort_order_equal(own_nodes, 0, index + row, keys + row, length, member,
+        } else {
+            cellist_sort_add_first_word(CELLIST_SORT_OWN, keys + row, length);
+            cellist_sort_order_equal(CELLIST_SORT_OWN, keys + row, length, member, &ties, ranks,
                                      order + row);
-#else
-            cellist_sort_order_equal(own_nodes, first, 0, keys + row, length, member, order + row);
-#endif
+        }
         cellist_sort_barrier();
 #if CELLIST_MODES == CELLIST_LINKED
         for (uint i = member; i < length; i += CELLIST_SORT_TEAM) {
@@ -156,6 +161,7 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
 #endif
     }
 
+    cellist_sort_tell_ties(state, &known_ties, &ties);
 #if CELLIST_MODES != CELLIST_LINKED
     cellist_sort_barrier();
     if (item == 0 && total > 0) cellist_sort_count_nodes(state, total);

@@ -19,9 +19,10 @@
 //   from, to      pool_nodes           the pools; every second pass goes from the pool that holds
 //                                      the lists to the other
 //   keys          pool_nodes           if CELLIST_SORT_KEEPS_KEYS is not 0: the key of each node of
-//                                      the lists. keys_from and keys_to go with the pools.
-//                                      Work-items that merge parts of a list must agree on where
-//                                      the parts end, so each key is computed once
+//                                      the lists, with the first word where there is room.
+//                                      keys_from and keys_to go with the pools. Work-items that
+//                                      merge parts of a list must agree on where the parts end, so
+//                                      each key is computed once
 //
 // A contiguous list stays a list between any two of these kernels. Every loop is bounded, and no
 // link leads outside of the pool, whatever the links are.
@@ -213,6 +214,7 @@ CELLIST_SORT_KERNEL cellist_sort_chunks(global const cellist_sort_long_list* lon
                                         global const uint* chunk_owners, uint chunks,
                                         global cellist_sort_node* nodes,
                                         global cellist_sort_bits* kept_keys,
+                                        volatile global cellist_sort_state* state,
                                         const cellist_values values) {
     CELLIST_SORT_SHARED cellist_sort_bits keys[CELLIST_SORT_CHUNK_SIZE];
     CELLIST_SORT_SHARED uchar order[CELLIST_SORT_CHUNK_SIZE];
@@ -230,16 +232,24 @@ CELLIST_SORT_KERNEL cellist_sort_chunks(global const cellist_sort_long_list* lon
         length = min(list.length - begin, (uint)CELLIST_SORT_CHUNK_SIZE);
     }
     if (item == 0) sum = 0;
-    for (uint i = item; i < length; i += CELLIST_SORT_ITEMS)
-        keys[i] = cellist_sort_key(&cellist_sort_record(nodes[first + i]), values);
+    for (uint i = item; i < length; i += CELLIST_SORT_ITEMS) {
+        global const struct CELLIST_RECORD* record = &cellist_sort_record(nodes[first + i]);
+        keys[i] = cellist_sort_add_word(cellist_sort_key(record, values), record);
+    }
     cellist_sort_barrier();
+    const cellist_sort_ties known_ties = cellist_sort_known_ties(state);
+    cellist_sort_ties ties = known_ties;
+    const int expects_ties = cellist_sort_expects_ties(&ties);
     uint ranks[CELLIST_SORT_RUNS * CELLIST_SORT_WIDTH];
-    cellist_sort_add(&sum, cellist_sort_rank(keys, length, item, ranks));
+    if (!expects_ties) cellist_sort_add(&sum, cellist_sort_rank(keys, length, item, ranks));
     cellist_sort_barrier();
-    if (cellist_sort_unique(sum, length))
+    const int unique = !expects_ties && cellist_sort_unique(sum, length);
+    if (!expects_ties) cellist_sort_note_ties(&ties, length, unique);
+    if (unique)
         cellist_sort_order(ranks, length, item, order);
     else
-        cellist_sort_order_equal(nodes, first, 0, keys, length, item, order);
+        cellist_sort_order_equal(nodes, first, 0, keys, length, item, &ties, ranks, order);
+    cellist_sort_tell_ties(state, &known_ties, &ties);
     cellist_sort_barrier();
 #if CELLIST_SORT_KEEPS_KEYS
     for (uint i = item; i < length; i += CELLIST_SORT_ITEMS) kept_keys[first + i] = keys[order[i]];

@@ -91,6 +91,7 @@ void add_build(Suite& suite);
 void add_append(Suite& suite);
 void add_read(Suite& suite);
 void add_sort(Suite& suite);
+void add_sort_ties(Suite& suite);
 void add_storage(Suite& suite);
 void add_nearest(Suite& suite);
 void add_pack(Suite& suite);

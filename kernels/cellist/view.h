@@ -151,6 +151,13 @@ typedef struct cellist_sort_counter {
     CELLIST_UINT padding[15];
 } cellist_sort_counter;
 
+// What the first lists of a sort tell about equal keys in the others.
+typedef struct cellist_sort_ties {
+    CELLIST_UINT lists;  // that were ranked by their keys alone
+    CELLIST_UINT tied;   // those of them that have equal keys
+    CELLIST_UINT level;  // words of the records that are the same in all ties
+} cellist_sort_ties;
+
 // What the kernels that sort find, from 0.
 typedef struct cellist_sort_state {
     CELLIST_UINT nodes;                           // of the lists that were sorted, and moved
@@ -159,6 +166,7 @@ typedef struct cellist_sort_state {
     CELLIST_UINT broken;                          // lists with links that no build makes
     CELLIST_UINT longer[CELLIST_SORT_STAGES];     // lists that were left by each class
     CELLIST_UINT in_class[CELLIST_SORT_CLASSES];  // lists that were sorted in work-groups
+    cellist_sort_ties ties;
     cellist_sort_counter in_place[CELLIST_SORT_COUNTERS];  // of the other lists that were sorted
 } cellist_sort_state;
 

@@ -52,10 +52,13 @@ void add_values(const Values& values, ExpressionProgram& program) {
 
 /// The definition of a function, which knows the values by their names.
 std::string definition_of(const ExpressionFunction& function, const Values& values) {
-    std::string names;
-    for (const Value& value : values)
-        names += "    const " + value.type() + " " + value.name() + " = cellist_given." +
-                 value.name() + ";\n";
+    const bool is_evaluated = function.unevaluated.empty();
+    std::string names = function.unevaluated;
+    for (const Value& value : values) {
+        const std::string name = value.type() + " " + value.name();
+        names += is_evaluated ? "    const " + name + " = cellist_given." + value.name() + ";\n"
+                              : "    " + name + ";\n";
+    }
     const std::string line = "#line 1 \"" + function.what + "\"\n";
     // Where clang knows that a value is undefined, it is an error: the kernel around it would be
     // undefined as well.
@@ -63,8 +66,9 @@ std::string definition_of(const ExpressionFunction& function, const Values& valu
            "#pragma clang diagnostic error \"-Wdivision-by-zero\"\n"
            "#pragma clang diagnostic error \"-Warray-bounds\"\n#endif\n"
            "#line 1 \"values of the " +
-           function.what + "\"\n" + function.head + "const cellist_values cellist_given) {\n" +
-           names + line + "return " + function.before + "(\n" + line +
+           function.what + "\"\n" + function.head +
+           (is_evaluated ? "const cellist_values cellist_given" : "void") + ") {\n" + names + line +
+           "return " + function.before + "(\n" + line +
            with_meanings(function.expression, function.subjects) + "\n)" + function.after +
            "; }\n#ifdef __clang__\n#pragma clang diagnostic pop\n#endif\n";
 }

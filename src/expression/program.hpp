@@ -29,6 +29,9 @@ struct ExpressionFunction {
     std::string before = {};  ///< comes before the expression, in the return statement
     std::string after = {};
     std::vector<Subject> subjects = {};
+    /// Declares what the subjects mean, in a function without parameters, which does not evaluate
+    /// the expression. Empty for the others.
+    std::string unevaluated = {};
 };
 
 /// What a kernel needs to compute expressions.

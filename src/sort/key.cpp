@@ -25,15 +25,39 @@ void check_key(const SortKey& key) {
 
 ExpressionProgram key_program(const SortKey& key) {
     const std::string type = key.bits == 32 ? "uint" : "ulong";
+    const std::string pointer = "global const struct CELLIST_RECORD* cellist_sort_at";
     return expression_program(
-        key.values,
-        {{.expression = key.expression,
-          .what = "sort expression",
-          .head = "static inline " + type +
-                  " cellist_sort_key(global const struct CELLIST_RECORD* cellist_sort_at,\n    ",
-          .before =
-              "(" + type + ")" + (key.order == Order::descending ? "~" : "") + "cellist_order",
-          .subjects = key_subjects()}});
+        key.values, {{.expression = key.expression,
+                      .what = "sort expression",
+                      .head = "static inline " + type + " cellist_sort_key(" + pointer + ",\n    ",
+                      .before = "(" + type + ")" + (key.order == Order::descending ? "~" : "") +
+                                "cellist_order",
+                      .subjects = key_subjects()},
+                     {.expression = key.expression,
+                      .what = "sort expression",
+                      .head = "static inline uint cellist_sort_key_bytes(",
+                      .before = "(uint)sizeof",
+                      .subjects = key_subjects(),
+                      .unevaluated = "    " + pointer + ";\n"}});
+}
+
+std::string tie_function(const SortKey& key, const RecordType& record) {
+    constexpr std::size_t scalars_max = 8;
+    std::string text =
+        "static inline uint cellist_sort_word(global const struct CELLIST_RECORD* record, "
+        "uint word) {\n";
+    std::size_t scalars = 0;
+    for (const RecordMember& member : record.members) {
+        if (key.expression == "record." + member.name) continue;
+        for (const std::string& path : member.scalars) {
+            if (scalars++ == scalars_max) break;
+            const std::string scalar = "record->" + path;
+            const std::string words = "cellist_words_of(" + scalar + ")";
+            text += "if (word < " + words + ") return cellist_word_of(" + scalar +
+                    ", word);\nword -= " + words + ";\n";
+        }
+    }
+    return text + "return 0;\n}\n";
 }
 
 bool is_member(const SortKey& key) {

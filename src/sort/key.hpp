@@ -10,8 +10,13 @@ namespace cellist::detail {
 /// check_values).
 void check_key(const SortKey& key);
 
-/// Defines cellist_sort_key(pointer to a record, values), of a key that check_key() accepts.
+/// Defines cellist_values, cellist_sort_key and cellist_sort_key_bytes (see sort.cl), of a key that
+/// check_key() accepts.
 [[nodiscard]] ExpressionProgram key_program(const SortKey& key);
+
+/// Defines cellist_sort_word (see sort.cl), for the first scalars of a record. A member that is the
+/// key decides no ties.
+[[nodiscard]] std::string tie_function(const SortKey& key, const RecordType& record);
 
 /// Whether a key is the value of a member, which is the same whenever it is read.
 [[nodiscard]] bool is_member(const SortKey& key);

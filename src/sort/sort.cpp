@@ -86,9 +86,10 @@ ListSorter::ListSorter(MemoryOwner device, RecordKernels& kernels)
 
 Kernel& ListSorter::kernel(const KernelFile& file, const char* name, const Sort& sort,
                            const SortTuning& tuning) {
-    return kernels_.get({{"sort.cl", kernels::sort_cl}, file}, name, sort.storage.mode(),
-                        definitions_of(tuning) + sort.definitions + sort.program.source,
-                        sort.program.types);
+    return kernels_.get(
+        {{"sort.cl", kernels::sort_cl}, {"sort_ties.cl", kernels::sort_ties_cl}, file}, name,
+        sort.storage.mode(), definitions_of(tuning) + sort.definitions + sort.program.source,
+        sort.program.types);
 }
 
 void ListSorter::clear_state() {
@@ -131,11 +132,13 @@ bool ListSorter::has_room_for(const Sort& sort, std::uint64_t more_bytes) const 
 
 ListSorter::Sort ListSorter::sort_of(ListStorage& storage, const SortKey& key) const {
     const bool linked = storage.mode() == CELLIST_LINKED;
+    ExpressionProgram program = key_program(key);
+    program.source += tie_function(key, kernels_.record());
     return {.storage = storage,
             .key = key,
             .plan = SortPlan(device_type_, device_->info, linked, kernels_.record().size),
             .linked = linked,
-            .program = key_program(key),
+            .program = std::move(program),
             .definitions = definitions_of(kernels_.record(), linked, key),
             .count = storage.cells()};
 }
@@ -353,7 +356,7 @@ void ListSorter::merge(Sort& sort, const Memory& long_lists, const Memory& chunk
         sort, "cellist_sort_chunks",
         groups_for(std::uint64_t{chunks} * tuning.items, tuning.items == 1 ? 16 : tuning.items),
         arguments_of(long_lists.cl(), chunk_owners.cl(), chunks, nodes, keys.of_pool.cl(),
-                     sort.program.values));
+                     state_.cl(), sort.program.values));
 
     const unsigned merges_a_chunk = std::max(tuning.chunk_size / tuning.merge_items, 1u);
     const Range merges =

@@ -208,6 +208,12 @@ class Ratios(unittest.TestCase):
                                     benchmark(f"segmented_sort/peer:std_sort/{workload}", 5.0)))
         self.assertEqual(ratio(results, "sort_vs_segmented_sort", "lists of 32")["value"], 2.5)
 
+    def test_sorting_of_ties_is_compared_with_unique_keys(self):
+        case = f"sort_ties_by_member/storage:linked/{at('coherent', 'node_bytes:16/occupancy:64/nodes:1024')}"
+        found = ratio(results_of(output("cpu", {**benchmark(case, 3.0), "unique_ms": 2.5})),
+                      "sort_ties_vs_unique", "by member, linked, lists of 64")
+        self.assertEqual((found["value"], found["goal"], found["better"]), (1.2, 1.3, "lower"))
+
     def test_the_worst_choice_counts_and_all_together(self):
         def case(distribution, linked, fixed, automatic_1, automatic_8, nodes_a_record=2.0):
             counters = {}
