@@ -14,4 +14,5 @@
 #include <cellist/report.hpp>
 #include <cellist/shape.hpp>
 #include <cellist/struct.hpp>
+#include <cellist/types.hpp>
 #include <cellist/value.hpp>

@@ -10,6 +10,7 @@
 #include <cellist/detail/for_each.hpp>
 #include <cellist/detail/record_type.hpp>
 #include <cellist/opencl.hpp>
+#include <cellist/types.hpp>
 
 /// Adapts a struct: kernels know it by its own name, with the same members at the same offsets.
 ///
@@ -19,7 +20,8 @@
 /// Put it in the namespace of the struct, and name every member in order of declaration. Members
 /// are scalars, `cl_` vectors, arrays, and other adapted structs. Scalars are `cl_float`,
 /// `cl_uint`, ..., the C++ types of the same size, and enums, but not bool. `<cellist/glm.hpp>`
-/// adds GLM's types. On the host `cl_float3` is `cl_float4`, so a kernel sees a float4.
+/// adds GLM's types. On the host `cl_float3` is `cl_float4`, so a kernel sees a float4, and
+/// `cl_half` is `cl_ushort`. Use Vector3<cl_float> and Half, from <cellist/types.hpp>.
 ///
 /// The struct must be trivially copyable and have standard layout. The host compiler checks the
 /// offsets against OpenCL C's rules, and each kernel build checks them with the device's compiler.
@@ -165,6 +167,8 @@ constexpr const char* scalar_name() {
         return nullptr;  // has no fixed size in OpenCL C
     else if constexpr (std::is_enum_v<T>)
         return scalar_name<std::underlying_type_t<T>>();
+    else if constexpr (std::is_same_v<T, Half>)
+        return "cellist_half";
     else if constexpr (std::is_same_v<T, float>)
         return "float";
     else if constexpr (std::is_same_v<T, double>)
@@ -251,6 +255,18 @@ private:
         if constexpr (detail::Scalar<M>) out.is_scalar = true;
         OnDevice::add_scalars(member.name, out.scalars);
         record.members.push_back(std::move(out));
+    }
+};
+
+template <detail::Scalar T>
+struct DeviceType<Vector3<T>> {
+    static_assert(!std::is_same_v<T, Half>, "OpenCL C has no vectors of cellist_half");
+    static constexpr std::size_t size = sizeof(Vector3<T>);
+    static constexpr std::size_t alignment = alignof(Vector3<T>);
+    static std::string name() { return DeviceType<T>::name() + "3"; }
+    static void define(detail::Definitions& definitions) { DeviceType<T>::define(definitions); }
+    static void add_scalars(const std::string& path, std::vector<std::string>& scalars) {
+        for (const char* const part : {".x", ".y", ".z"}) scalars.push_back(path + part);
     }
 };
 

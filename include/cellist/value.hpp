@@ -18,7 +18,7 @@ class Value {
 public:
     /// The types are those of members: scalars other than bool, `cl_` vectors, GLM's types and
     /// adapted structs, but not arrays. On the host `cl_float3` is `cl_float4`, so the expression
-    /// sees a float4.
+    /// sees a float4; Vector3<cl_float> is a float3.
     ///
     /// The calls that take values throw Error if a name is not an identifier of OpenCL C, is a
     /// keyword, is `record`, starts with "cellist_", or occurs twice.
@@ -32,7 +32,7 @@ public:
         static_assert(!std::is_same_v<T, bool>,
                       "OpenCL C has no bool of a fixed size: use cl_uint for the value");
         static_assert(detail::KnownOnDevice<T> || std::is_same_v<T, bool>,
-                      "a value's type has no counterpart in OpenCL C: adapt it with CELLIST_STRUCT");
+                      "OpenCL C has no such type for the value: adapt it with CELLIST_STRUCT");
         static_assert(!std::is_array_v<T>,
                       "a value cannot be an array: make it a member of an adapted struct");
         std::memcpy(bytes_.data(), &value, sizeof value);

@@ -14,6 +14,7 @@
 #include <cellist/report.hpp>
 #include <cellist/shape.hpp>
 #include <cellist/struct.hpp>
+#include <cellist/types.hpp>
 #include <cellist/value.hpp>
 #if __has_include(<glm/glm.hpp>)
 #include <cellist/glm.hpp>
