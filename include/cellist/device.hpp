@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include <cellist/detail/api.hpp>
 #include <cellist/detail/owned.hpp>
 #include <cellist/opencl.hpp>
 
@@ -46,7 +47,7 @@ struct DeviceInfo {
 ///
 /// Several threads may use one Device and the objects made from it, if each object is used by one
 /// thread at a time.
-class Device {
+class CELLIST_API Device {
 public:
     /// Returns the device that the environment variable CELLIST_DEVICE names, as in
     /// choose(selector). If the variable is unset or empty, returns the first GPU, or else the

@@ -3,19 +3,20 @@
 #include <stdexcept>
 #include <string>
 
+#include <cellist/detail/api.hpp>
 #include <cellist/opencl.hpp>
 #include <cellist/report.hpp>
 
 namespace cellist {
 
 /// The base of all exceptions of the library. The message names the value and the limit.
-class Error : public std::runtime_error {
+class CELLIST_API Error : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
 
 /// An OpenCL call failed, for example because the device or the driver is out of memory.
-class OpenClError : public Error {
+class CELLIST_API OpenClError : public Error {
 public:
     OpenClError(std::string call, cl_int code, std::string log = {});
 
@@ -36,14 +37,14 @@ private:
 /// A request exceeds the memory for it: the host's memory, the device's largest allocation, the
 /// budget, or the pool. The library throws it before it calls a driver. out_of_memory() also
 /// recognises the drivers' errors.
-class MemoryError : public Error {
+class CELLIST_API MemoryError : public Error {
 public:
     using Error::Error;
 };
 
 /// The records of a build did not fit: under Overflow::stop, or because the pool could not grow.
 /// The container is empty.
-class OverflowError : public MemoryError {
+class CELLIST_API OverflowError : public MemoryError {
 public:
     OverflowError(const std::string& message, const BuildReport& report)
         : MemoryError(message), report_(report) {}
@@ -65,9 +66,9 @@ private:
 ///         if (!cellist::out_of_memory(error)) throw;
 ///         ... // fewer records, a smaller budget, another storage, Lists::build_slices()
 ///     }
-[[nodiscard]] bool out_of_memory(const Error& error) noexcept;
+[[nodiscard]] CELLIST_API bool out_of_memory(const Error& error) noexcept;
 
 /// Returns the name of an OpenCL error code, e.g. "CL_OUT_OF_RESOURCES", or "unknown error".
-[[nodiscard]] const char* error_name(cl_int code);
+[[nodiscard]] CELLIST_API const char* error_name(cl_int code);
 
 }  // namespace cellist

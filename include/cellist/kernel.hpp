@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include <cellist/detail/api.hpp>
 #include <cellist/detail/arguments.hpp>
 #include <cellist/detail/owned.hpp>
 #include <cellist/device.hpp>
@@ -31,7 +32,7 @@ struct Source {
 /// source that includes the user's own files, by a directive or by the option "-include". Each
 /// Kernel compiles such a source again from the current files. `#include <cellist/lists.clh>` and
 /// `<cellist/glm.clh>` need no path and do not prevent caching.
-class Kernel {
+class CELLIST_API Kernel {
 public:
     /// Compiles `code` and takes the kernel `name` from it. `uses` names the types that the source
     /// may use: containers, and cellist::type<T> for other adapted structs. Blocks while it

@@ -6,6 +6,7 @@
 #include <string>
 
 #include <cellist/buffer.hpp>
+#include <cellist/detail/api.hpp>
 #include <cellist/opencl.hpp>
 #include <cellist/struct.hpp>
 #include <cellist/value.hpp>
@@ -86,8 +87,8 @@ namespace detail {
 
 /// Finds the neighbours. `index` is the member whose value is the index of a record; empty for the
 /// record's place.
-void find_neighbours(const ListsCore& lists, const NeighbourOptions& options,
-                     const std::string& index, Neighbours& found);
+CELLIST_API void find_neighbours(const ListsCore& lists, const NeighbourOptions& options,
+                                 const std::string& index, Neighbours& found);
 
 /// The queries of a search, and where its results go.
 struct NearestSearch {
@@ -100,9 +101,9 @@ struct NearestSearch {
     const Memory& distances;
 };
 /// Throws Error if the options are invalid.
-void check_nearest(const NearestOptions& options);
-void find_nearest(const ListsCore& lists, const NearestOptions& options,
-                  const NearestSearch& search);
+CELLIST_API void check_nearest(const NearestOptions& options);
+CELLIST_API void find_nearest(const ListsCore& lists, const NearestOptions& options,
+                              const NearestSearch& search);
 
 }  // namespace detail
 }  // namespace cellist

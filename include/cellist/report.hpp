@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <cellist/detail/api.hpp>
+
 namespace cellist {
 
 /// The result of a build or an append. `existing + attempted == stored + dropped + rejected` holds
@@ -30,7 +32,7 @@ struct Slice {
 };
 
 /// The lengths of the lists.
-struct Lengths {
+struct CELLIST_API Lengths {
     Lengths() = default;
     /// Summarises lists of these lengths.
     explicit Lengths(const std::vector<std::uint32_t>& lengths);
@@ -43,7 +45,7 @@ struct Lengths {
 };
 
 /// The result of Lists::validate(). All counts are 0 in a sound container.
-struct Validation {
+struct CELLIST_API Validation {
     std::uint64_t broken_links = 0;    ///< links, offsets or counts that lead outside the lists
     std::uint64_t repeated_nodes = 0;  ///< links to a node that is already in a list, or in circles
     std::uint64_t lost_nodes = 0;      ///< nodes that no list reaches, or that were never written

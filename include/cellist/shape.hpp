@@ -6,13 +6,14 @@
 #include <initializer_list>
 #include <string>
 
+#include <cellist/detail/api.hpp>
 #include <cellist/detail/extent.hpp>
 
 namespace cellist {
 
 /// The extents of the cells: 1 to 4 dimensions, x fastest. If an extent is 0, there are no cells,
 /// and every insert is rejected.
-class Shape {
+class CELLIST_API Shape {
 public:
     /// The largest extent of one dimension.
     static constexpr std::uint64_t extent_max = 0x7FFF'FFFF;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <cellist/buffer.hpp>
+#include <cellist/detail/api.hpp>
 #include <cellist/struct.hpp>
 
 namespace cellist {
@@ -28,7 +29,7 @@ namespace detail {
 class ListsCore;
 
 /// The arguments of one launch, in order.
-class Arguments {
+class CELLIST_API Arguments {
 public:
     enum class Kind { value, memory, sampler, local };
     struct Argument {
@@ -132,7 +133,7 @@ private:
 };
 
 /// The mode in which a container is read.
-[[nodiscard]] unsigned read_mode(const ListsCore& lists);  // in lists_core.cpp
+[[nodiscard]] CELLIST_API unsigned read_mode(const ListsCore& lists);  // in lists_core.cpp
 
 template <class T>
 Definitions definitions_used(const Lists<T>& lists) {

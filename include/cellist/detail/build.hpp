@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <cellist/detail/api.hpp>
 #include <cellist/detail/lists_core.hpp>
 #include <cellist/detail/readback.hpp>
 #include <cellist/report.hpp>
@@ -18,7 +19,7 @@ enum class Existing { cleared, kept };
 
 /// A build of one or more containers: passes over the user's kernels until every container is
 /// complete. start() enqueues the passes that need no look at the counters; finish() does the rest.
-class Build : public std::enable_shared_from_this<Build> {
+class CELLIST_API Build : public std::enable_shared_from_this<Build> {
 public:
     /// Enqueues the first passes: `insert` runs the kernels that fill the containers. Throws what
     /// `insert` throws; the containers have their existing records then, or are empty. Throws Error

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <cellist/detail/api.hpp>
 #include <cellist/detail/memory.hpp>
 #include <cellist/detail/readback.hpp>
 #include <cellist/detail/record_type.hpp>
@@ -54,7 +55,7 @@ struct BuildState {
 /// Lists without the record's C++ type: a storage, and the kernels that read and sort any storage.
 /// The kernels see the record by its name in OpenCL C. Does not move in memory: a pending build
 /// refers to it.
-class ListsCore : public std::enable_shared_from_this<ListsCore> {
+class CELLIST_API ListsCore : public std::enable_shared_from_this<ListsCore> {
 public:
     ListsCore(std::shared_ptr<DeviceState> device, Definitions definitions, const Shape& shape,
               const ListsOptions& options);

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include <cellist/detail/api.hpp>
 #include <cellist/detail/owned.hpp>
 #include <cellist/detail/readback.hpp>
 #include <cellist/opencl.hpp>
@@ -18,7 +19,7 @@ namespace cellist::detail {
 struct DeviceState;
 
 /// A device, and the total size of the memory that one owner has on it.
-class MemoryOwner {
+class CELLIST_API MemoryOwner {
 public:
     explicit MemoryOwner(std::shared_ptr<DeviceState> state) : state_(std::move(state)) {}
 
@@ -52,7 +53,7 @@ template <class T>
 
 /// A buffer on a device with checked sizes and one way to fail. Never empty for OpenCL: 0 elements
 /// take one byte.
-class Memory {
+class CELLIST_API Memory {
 public:
     Memory() = default;
     /// `count` elements of `element_bytes`. Throws MemoryError beyond the device's limit, naming

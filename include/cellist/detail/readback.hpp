@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <cellist/detail/api.hpp>
 #include <cellist/error.hpp>
 #include <cellist/opencl.hpp>
 
@@ -13,7 +14,7 @@ namespace cellist::detail {
 
 /// A read that was enqueued. When the event has completed, the bytes are in `staged`, or where that
 /// is null in `target`.
-struct PendingRead {
+struct CELLIST_API PendingRead {
     cl::Event event = {};
     std::shared_ptr<std::byte> staged = {};
     void* target = nullptr;
@@ -22,7 +23,7 @@ struct PendingRead {
 
 /// Reads into host memory that are under way. The destructor blocks until no read writes to the
 /// memory: declare the fence after the memory.
-class ReadbackFence {
+class CELLIST_API ReadbackFence {
 public:
     ReadbackFence() = default;
     ReadbackFence(const ReadbackFence&) = delete;

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <cellist/detail/api.hpp>
+
 namespace cellist::detail {
 
 /// A member of an adapted struct, as OpenCL C sees it.
@@ -17,7 +19,7 @@ struct RecordMember {
 };
 
 /// An adapted struct, as OpenCL C sees it.
-struct RecordType {
+struct CELLIST_API RecordType {
     std::string name;
     std::size_t size = 0;
     std::size_t alignment = 1;
@@ -28,7 +30,7 @@ struct RecordType {
 };
 
 /// The types that a program needs, each after the types that it is made of.
-struct Definitions {
+struct CELLIST_API Definitions {
     std::vector<RecordType> records;
     std::vector<std::string> texts;  ///< definitions of types that are not records, in order
     bool needs_fp64 = false;
@@ -50,9 +52,9 @@ struct NodeLayout {
     std::size_t size;
     std::size_t alignment;
 };
-[[nodiscard]] NodeLayout node_layout(const RecordType& record);
+[[nodiscard]] CELLIST_API NodeLayout node_layout(const RecordType& record);
 
 /// The device's definitions of GLM's types, for Definitions::texts.
-[[nodiscard]] std::string glm_source();
+[[nodiscard]] CELLIST_API std::string glm_source();
 
 }  // namespace cellist::detail
