@@ -39,7 +39,7 @@ private:
         std::make_shared<std::atomic<std::uint64_t>>(0);
 };
 
-[[noreturn]] void throw_no_host_memory(std::uint64_t count, std::size_t element_bytes);
+[[noreturn]] CELLIST_API void throw_no_host_memory(std::uint64_t count, std::size_t element_bytes);
 
 /// Host memory for the elements of a result. Throws MemoryError if there is not enough.
 template <class T>
