@@ -142,7 +142,7 @@ void DrawingThread::use_device(const std::string& name) {
     device_.reset();
     device_.emplace(name.empty() ? cellist::Device::choose() : cellist::Device::choose(name));
     device_name_ = name;
-    studio_.emplace(*device_, [this](double part) { interrupt_or_show(part); });
+    studio_.emplace(Studio{*device_, [this](double part) { interrupt_or_show(part); }});
 }
 
 void DrawingThread::interrupt_or_show(double part) {

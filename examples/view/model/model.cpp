@@ -41,8 +41,8 @@ Model::Model(const Program& program, Arguments arguments)
 std::string Model::scene_name(const std::vector<std::string>& scene) {
     std::string name;
     for (const std::string& part : scene)
-        name += (name.empty() ? "" : " + ") +
-                support::text_of(std::filesystem::path(part).filename());
+        name +=
+            (name.empty() ? "" : " + ") + support::text_of(std::filesystem::path(part).filename());
     return name;
 }
 

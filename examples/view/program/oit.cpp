@@ -96,8 +96,8 @@ public:
                                                                 std::size_t eye) override {
         std::vector<ListEntry> list;
         for (const oit::PixelFragment& fragment : renderer().fragments_at(x, y, eye)) {
-            ListEntry entry{.depth = fragment.depth,
-                            .alpha = fragment.alpha,
+            ListEntry entry{.depth = static_cast<double>(fragment.depth),
+                            .alpha = static_cast<double>(fragment.alpha),
                             .coverage = fragment.coverage,
                             .blend = blend_name(fragment.blend)};
             std::ranges::copy(fragment.colour, entry.colour);

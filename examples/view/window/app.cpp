@@ -140,7 +140,8 @@ void App::follow_window_size() {
 }
 
 void App::draw_window() {
-    window_.set_title(title_of(model_));
+    if (std::string title = title_of(model_); title != title_)
+        window_.set_title(title_ = std::move(title));
     window_.show(
         [&] {
             const float width = panel_width();
@@ -210,7 +211,7 @@ void App::run_command(const ScriptCommand& command) {
     } else if (name == "screenshot") {
         screenshot_ = command.text(0);
     } else if (name == "print") {
-        print(command.text(0));
+        print(command);
     } else if (name == "copy") {
         copy_command_line();
     } else if (name == "wait") {
@@ -220,15 +221,20 @@ void App::run_command(const ScriptCommand& command) {
     }
 }
 
-void App::print(const std::string& what) const {
-    if (what == "command") std::cout << model_.command_line() << '\n';
-    if (what == "error")
+void App::print(const ScriptCommand& command) const {
+    const std::string& what = command.text(0);
+    if (what == "command")
+        std::cout << model_.command_line() << '\n';
+    else if (what == "error")
         for (const DrawnSide& side : shown_.sides) std::cout << "error: " << side.error << '\n';
-    if (what == "fps")
+    else if (what == "fps")
         std::cout << "fps: " << support::fixed(model_.times(0).frames_per_second().value_or(0), 1)
                   << '\n';
-    if (what == "status") std::cout << "status: " << model_.status << '\n';
-    if (what == "list") {
+    else if (what == "status")
+        std::cout << "status: " << model_.status << '\n';
+    else if (what != "list")
+        command.refuse("there is nothing of this name to print");
+    else {
         const auto& list = shown_.sides[0].list;
         std::cout << "list: " << (list ? std::to_string(list->size()) : "none") << '\n';
         if (list)

@@ -39,7 +39,7 @@ private:
     void run_script();
     [[nodiscard]] bool is_settled() const;
     void run_command(const ScriptCommand& command);
-    void print(const std::string& what) const;
+    void print(const ScriptCommand& command) const;
 
     [[nodiscard]] float panel_width() const;
     [[nodiscard]] std::pair<int, int> wanted_picture_size() const;
@@ -60,6 +60,7 @@ private:
     std::size_t answers_ = 0;        // that were taken
     std::size_t frames_wanted_ = 0;  // of answers_, for the script
     double script_resumes_s_ = 0;
+    std::string title_;
     std::string screenshot_;  // to write when the window is drawn
     DrawingThread thread_;    // last: it wakes the window
 };
