@@ -25,14 +25,18 @@ std::string help() {
         text += "\n";
     }
     text += "The default program is " + viewer::programs().front().name +
-            ". Options are those of the program that draws the same picture:\n";
+            ". Options are those of the program that draws the same picture.\n";
     for (const viewer::Program& program : viewer::programs()) {
-        text += "  " + program.command + ":";
-        for (const viewer::Control& control : program.controls) text += " " + control.option;
-        text += "\n";
+        text += "\nOptions of " + program.command + " that the viewer takes:\n";
+        for (const viewer::Control& control : program.controls) {
+            std::string line = "  " + control.option + " ";
+            line.resize(std::max<std::size_t>(line.size(), 24), ' ');
+            text += line + control.hint + "\n";
+        }
     }
     return text +
-           "--size WxH is the size of the picture in the beginning; it follows the window.\n\n"
+           "\n--size WxH, or --width and --height, is the size of the picture in the beginning; it "
+           "follows the window.\n\n"
            "Keys: space play, t turn, h heat map, s split, arrows and +/- camera, r reset it,\n"
            "      tab panel, p save the picture, c copy the command line, q quit\n\n"
            "Commands of a script, one a line:\n" +
