@@ -184,7 +184,7 @@ void Window::copy(const std::string& text) { glfwSetClipboardString(window_, tex
 float Window::scale() const {
     float x = 1, y = 1;
     glfwGetWindowContentScale(window_, &x, &y);
-    return x;
+    return x / pixels_per_unit();
 }
 
 float Window::pixels_per_unit() const {

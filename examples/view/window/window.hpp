@@ -61,7 +61,7 @@ public:
     void resize(int width, int height);
     void set_title(const std::string& title);
     void copy(const std::string& text);
-    /// By how much the user's system enlarges text.
+    /// By how much the user's system enlarges text, beyond what its units of length do.
     [[nodiscard]] float scale() const;
     /// Pixels for each unit of length.
     [[nodiscard]] float pixels_per_unit() const;
