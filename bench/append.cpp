@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Appends of 1 % more records, from the call to the report. Host time, with launches. The counter
 // `of_build` is the time in parts of a build of all records in the same lists.
 

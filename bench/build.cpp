@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Whole builds, from the call to the report: clearing, the runs of the user's kernel, and the other
 // work of the storage. Host time, with launches.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The hardware's limits for an insert. The work-item's index is the address, so there is no
 // allocation, but in allocate_exchange_and_store. A node is stored at once. Every kernel checks its
 // range, as an insert does.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Clears all lists, in host time. The items are cells.
 
 #include "support/containers.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Inserts of `count` records, one from each work-item; launched over whole work-groups.
 #include <cellist/lists.clh>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The insert alone: device time for the runs of the user's kernel in a build. Storage::counted has
 // two runs. It has one if the library moves the records afterwards, which does not count. Runs of
 // the ceiling and of the insert are interleaved, so that other work on the machine does not change

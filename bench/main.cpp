@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The benchmarks, on Google Benchmark. Times are medians of at least 7 runs. The device's clock
 // times single kernels, and the host's clock times calls. The results of each case are checked
 // once, before it is timed.

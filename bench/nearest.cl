@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The digest of each cell's BENCH_NEAREST records with the least keys; one work-item a cell.
 #include <cellist/lists.clh>
 

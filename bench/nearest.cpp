@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The 8 nearest records of every cell, in device time.
 
 #include "support/containers.hpp"

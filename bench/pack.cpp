@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Packs all lists into a contiguous copy, in host time. Each run allocates the buffers.
 
 #include "support/containers.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Traverses every list once and writes its digest: one work-item and one element of `digests` a
 // cell.
 #include <cellist/lists.clh>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Traverses every list once, in device time.
 
 #include "support/containers.hpp"

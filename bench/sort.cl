@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Counts the nodes whose key is less than that of the node before; one work-item a cell.
 #include <cellist/lists.clh>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sorts every list by its key, in host time. Each run builds the lists again, so that none is
 // already sorted.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sorts lists whose records share keys, four to a key, and the same lists with unique keys, in host
 // time. The counter unique_ms is the time of the second sort.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One build and one read of all lists for each storage, in host time.
 
 #include <deque>

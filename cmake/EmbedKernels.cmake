@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Embeds OpenCL sources in a program, so that it needs no file at run time.
 #
 #   cellist_embed_kernels(TARGET <target> NAMESPACE <ns> [PREFIX <prefix>] FILES <file>...)

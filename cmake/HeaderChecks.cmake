@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Compiles every header alone, so that no header depends on what its user included before it.
 #
 #   cellist_add_header_checks(<name> TARGET <target> BASE_DIR <dir> HEADERS <header>...)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # The packages that `cpack -G DEB` makes: the library for developers, the command, and the example
 # programs; a shared library has one of its own.
 

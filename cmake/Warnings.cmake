@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # cellist_warnings: the warnings that cellist's own targets compile with.
 #
 # Link it PRIVATE to a target of this project. It is never installed or exported, so no user of the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Finds what cellist needs of OpenCL: the loader, the C headers and the C++ header CL/opencl.hpp.
 #
 # Defines the target OpenCL::OpenCL and sets cellist_opencl_missing: empty when all is found,

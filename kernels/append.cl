@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What appends to lists need beside the inserts of the user.
 //
 // One work-item a cell, except for cellist_save_counters; ranges are padded to whole work-groups.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sets heads and clears counters before a pass, in one launch: a launch takes longer than clearing
 // a small container does.
 //

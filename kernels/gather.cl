@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Copies a value of each record of a range of lists into one array, in the order of the lists.
 //
 //   offsets   cells + 1          where each list goes, counted from the first list of all

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The k records nearest to each query, nearest first.
 //
 //   lists       in any storage

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The length of every list.
 //
 //   lengths   cells   out: nodes of the cell

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Replaces all lists by those of a contiguous copy, in their order.
 //
 //   from      the copy; a list begins where the copy says

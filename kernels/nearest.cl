@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The thresholds between the K records of each cell that come first and all others; see
 // nearest.clh.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The neighbours of every record, as rows of indices. The same kernel runs twice: a pass counts the
 // neighbours, then scan.cl computes where the rows begin, and another pass stores them.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Moves records from partitions of the cells into contiguous lists. An insert in mode PARTITIONED
 // has left each record in a block of its thread for the partition of its cell, with the cell after
 // it: see counted.clh. A partition is counted and then moved while a core's cache holds it. After

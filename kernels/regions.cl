@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Moves records from regions of the partitions into contiguous lists, on GPUs. An insert in mode
 // PARTITIONED has left each record in the region of its cell's partition, with the cell after it:
 // see counted.clh. A work-group counts a partition in local memory, sorts it there by cell, and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Divides contiguous lists by a predicate: the records that stay move to the begin of their list, in
 // order, and those that go follow in any order.
 //

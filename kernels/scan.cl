@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sums and prefix sums of the counts of all cells, in tiles.
 //
 //   heads     the counts of the cells, from counts_at on

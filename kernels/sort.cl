@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the kernels that sort have in common: how nodes lie in memory, and ranking a few of them.
 //
 // The order is that of cellist_sort_key, then that of the record's scalars. The host defines

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sorts lists of any length where there is no memory for a second pool, one work-item a list. See
 // sort.cl.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sorts lists of up to CELLIST_SORT_CHUNK_SIZE nodes; see sort.cl.
 //
 // Linked lists move to another pool, where each is contiguous, in any order: writing whole nodes in

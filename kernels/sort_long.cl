@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sorts long lists with all work-items together: chunks of CELLIST_SORT_CHUNK_SIZE nodes are
 // ranked, then merged in passes between two pools. See sort.cl.
 //

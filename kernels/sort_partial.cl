@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Brings the top k records of every list, those that come first, to its first nodes, in order; the
 // others follow in any order. See sort.cl. The whole list is visited.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Orders the records of a list that has equal keys: by the key, then by the record's scalars. See
 // sort.cl.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Reads every record once, list by list: what any kernel that reads the lists takes at least.
 //
 //   found   2   in and out: at least the length of the longest list; nothing of use

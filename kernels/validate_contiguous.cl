@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Checks the offsets of lists that lie one after the other: that they ascend inside the pool, that
 // they match the counts, and that every list was filled.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Checks the links of every list: each allocated node is reached from exactly one head, exactly
 // once.
 //

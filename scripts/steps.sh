@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # shellcheck shell=bash
 # Sourced by demo and test: runs the steps of a script, each with its output in a log.
 : "${log_dir:?is where the logs go; the script that sources this file sets it}"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // attempted == stored + dropped + rejected, and the lists hold what the report says, over random
 // cases of shape, capacity, distribution, storage, policy and work-group size.
 #include <iostream>

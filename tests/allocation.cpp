@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Allocation fills the pool to its last node, and no record is lost on the way.
 #include "support/inserts.hpp"
 #include "support/storages.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // append() keeps the records that are in the lists, and reports both exactly.
 #include "support/appends.hpp"
 #include "support/errors.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // append_async() does not wait for the device under drop, and finishes an append later otherwise.
 #include <memory>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Storage::automatic keeps records where an append makes it leave a storage.
 #include "support/appends.hpp"
 #include "support/internals.hpp"

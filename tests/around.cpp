@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Traversals of neighbouring cells visit the records of each cell once, whatever lies beyond the
 // shape.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The twins of the blocking calls: what they return is what the blocking calls return, and what
 // uses a container before its build is finished waits for it.
 #include "support/errors.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What does not block by its documentation returns while the device waits for an event that comes
 // later.
 #include <chrono>

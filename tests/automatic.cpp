@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Storage::automatic does what the other storages do, while it tries them, when one is chosen, and
 // when the one that was chosen fails. Which is chosen depends on the device: tests that need a
 // certain one tell the tuner of times of their own.

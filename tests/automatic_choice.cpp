@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What Storage::automatic chooses, from invented times. No device, no clock.
 #include <iostream>
 

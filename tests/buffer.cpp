@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Buffers hold, fill and return elements of any size.
 #include "support/errors.hpp"
 #include "support/inserts.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A build whose kernels insert into a container that is no part of it ends in an error that names
 // the container, and keeps nothing. Containers that kernels only read are no matter.
 #include <optional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A container cannot be built inside of its own build, in any way. The build around it goes on.
 #include <functional>
 #include <optional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // cellist::build fills several containers at once, whatever their storages and policies are, and
 // leaves all of them empty where one fails.
 #include <stdexcept>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Coordinates of any type become the cell that they lie in; those outside of the shape are
 // rejected.
 #include <cmath>

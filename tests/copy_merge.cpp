@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // copy() and merge() hold exactly the records of their lists.
 #include "support/appends.hpp"
 #include "support/errors.hpp"

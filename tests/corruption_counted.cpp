@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // validate() finds offsets and counts of Storage::counted that do not belong together.
 #include <iostream>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // validate() finds counts of Storage::fixed that are wrong, and no count leads out of its cell.
 #include <iostream>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sorting lists whose links or offsets no build makes: it ends, writes nothing outside of the pool,
 // and says so where it finds out.
 #include <iostream>

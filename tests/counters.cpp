@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Counters are exact in 64 bits, and no counter wraps into a node that is not free.
 #include "support/inserts.hpp"
 

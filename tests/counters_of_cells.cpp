@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The counts of cells in Storage::counted and Storage::fixed stay exact near 2^31 and in sums over
 // 2^32, and no count wraps into a node.
 #include "support/errors.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Devices are chosen by index and by name, and everything made from a Device outlives it.
 #include <cctype>
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The library works on the user's own context and queue.
 #include <chrono>
 #include <thread>

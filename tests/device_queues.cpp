@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Several devices on one context, each with a queue of its own: what a kernel of one does with
 // lists and buffers of another is ordered with the other's queue.
 #include <optional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The README and docs/ quote code from programs that are compiled and run. A line
 // `<!-- code: path -->` precedes each block of C++ or OpenCL C and names its file. The file must
 // contain the block's lines in sequence, apart from indentation.

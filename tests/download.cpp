@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The downloaded lists are addressed by position and by index, and outlive the container.
 #include <stdexcept>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every scalar type is a key, at the borders of its values: sorted lists are those of a stable sort
 // on the host, bit for bit, in every storage and order.
 #include <iostream>

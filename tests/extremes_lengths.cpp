@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Lists of any length are sorted, those at the borders of every power of two too, and a cell that
 // every work-item inserts into loses nothing.
 #include <iostream>

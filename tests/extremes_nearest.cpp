@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The nearest records by keys at the borders of their types are the first of the sorted lists:
 // those that kernels take, and those that nearest() keeps.
 #include <iostream>

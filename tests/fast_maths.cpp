@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Build options that let the compiler assume finite floats change neither cells nor orders.
 #include <cmath>
 #include <limits>

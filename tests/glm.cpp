@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // GLM's vectors and matrices are members of records, packed as on the host.
 #include <cellist/glm.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Halves are ordered as floats, and the fourth component of a 3-vector takes no part in any order.
 #include <bit>
 #include <cmath>

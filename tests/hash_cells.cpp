@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // cellist_hash_cell2 and 3 give positions of any size a cell.
 #include <cmath>
 #include <limits>

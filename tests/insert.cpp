@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Everything that is inserted is found again, in its cell.
 #include "support/inserts.hpp"
 #include "support/storages.hpp"

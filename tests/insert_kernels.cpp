@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Inserts from kernels of any form: loops, divergent branches, ranges of 2 and 3 dimensions,
 // several containers.
 #include "support/errors.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Neighbours that share a cell, in every constellation of work-items: where the device has lanes,
 // they link to each other first.
 #include "support/inserts.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Records of any size and alignment come back byte for byte.
 #include "support/inserts.hpp"
 #include "support/storages.hpp"

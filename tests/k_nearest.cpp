@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The K records nearest to each of many queries, against a search of all records.
 #include <cmath>
 #include <limits>

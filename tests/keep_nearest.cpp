@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // nearest() keeps exactly the records of each cell that come first, ties included, whatever
 // the order of insertion.
 #include <bit>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Arguments that do not fit the kernel's parameters are refused, naming the parameter.
 #include "support/errors.hpp"
 #include "support/inserts.hpp"

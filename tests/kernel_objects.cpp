@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Images, samplers, pipes and buffers are told from one another, by what they are and not by the
 // class of the C++ bindings that they come in; sizes of local and constant memory are compared with
 // the device's.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A range launches exactly its work-items.
 #include "support/errors.hpp"
 #include "support/inserts.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sources include the library's headers without a path, and their errors have the user's own lines.
 #include "device/program_text.hpp"
 #include "support/errors.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // lengths() describes the lists as the oracle does, and so do the lengths on the device.
 #include "support/inserts.hpp"
 #include "support/storages.hpp"

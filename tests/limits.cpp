@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sizes are checked against the limits before anything is allocated; the message names both.
 #include "support/errors.hpp"
 #include "support/inserts.hpp"

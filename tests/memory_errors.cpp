@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Users catch every lack of memory in one place: a MemoryError, or an error that out_of_memory()
 // knows.
 #include <initializer_list>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What was moved from throws an error that says so, whatever is asked of it.
 #include <functional>
 

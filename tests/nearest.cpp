@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The K nearest records of a cell are those that a full sort puts first, for any order of
 // insertion.
 #include <tuple>

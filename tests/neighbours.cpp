@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The neighbours of all records, against a comparison of all pairs.
 #include <cmath>
 #include <limits>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Runs the tests tagged [oclgrind] in the simulator and fails on what it reports.
 #
 #   oclgrind   the program

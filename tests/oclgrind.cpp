@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every kernel of the library once, at sizes that a simulator runs in seconds. ctest runs these
 // tests under Oclgrind too, which reports invalid accesses and data races.
 #include "support/appends.hpp"

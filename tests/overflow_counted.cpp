@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Storage::counted makes room for exactly what it counted, or stops, or drops from the highest
 // cells.
 #include "support/errors.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Overflow::drop keeps what fits, counts the rest exactly, and keeps every list valid.
 #include "support/errors.hpp"
 #include "support/inserts.hpp"

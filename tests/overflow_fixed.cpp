@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Storage::fixed raises its slots to the longest list, or stops, or keeps what fits into each cell.
 #include "support/errors.hpp"
 #include "support/inserts.hpp"

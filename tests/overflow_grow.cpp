@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Overflow::grow enlarges the pool to the exact demand and runs the kernels again.
 #include "support/errors.hpp"
 #include "support/inserts.hpp"

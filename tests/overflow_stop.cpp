@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Overflow::stop throws where the pool is too small, and nothing half-built stays readable.
 #include "support/errors.hpp"
 #include "support/inserts.hpp"

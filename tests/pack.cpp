@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // pack() returns in device memory what download() returns in host memory.
 #include <array>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Storage::counted in one pass, on processors: threads put records into partitions of the cells,
 // and the library moves them. Elsewhere the same builds count and fill.
 #include <functional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // After Device::prepare, nothing is compiled.
 #include <algorithm>
 #include <fstream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Programs are stored in files and loaded by the next process; what is wrong with a file costs a
 // build and nothing else.
 #include <fstream>

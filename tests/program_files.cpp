@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The files in which the library keeps compiled programs: whatever else stands in their place, or
 // happens to the folder, counts as no file.
 #include "device/program_files.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Storage::counted in one pass on GPUs: records go to regions of the cells' partitions, and the
 // library moves them. The device of this test counts as a GPU, whatever it is.
 #include "support/inserts.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // remove_if() removes exactly the records that its expression selects, and keeps the order.
 #include "support/appends.hpp"
 #include "support/errors.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The sorted lists depend on what was inserted, not on when: downloads are equal bit for bit.
 #include <bit>
 #include <iostream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `cellist selftest` takes its sizes from the device: it works on small ones, and within what they
 // have.
 #include <sstream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // build_slices builds lists that are more than the pool may hold, a range of cells at a time.
 #include "support/errors.hpp"
 #include "support/inserts.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What sorts, packs and validates takes its sizes from the device: one with small work-groups and
 // little local memory.
 #include "device/device_state.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Lists of any length are sorted by a key, then by their other members.
 #include <bit>
 #include <limits>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Lists are sorted in classes by their length, by one work-item or by many, in one pool or in two.
 // The result does not depend on it.
 #include <limits>

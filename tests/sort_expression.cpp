@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The expression of sort_by is one expression and nothing else, whatever it holds.
 #include "support/errors.hpp"
 #include "support/inserts.hpp"

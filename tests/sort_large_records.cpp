@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Records of any size are sorted, packed and found, without private memory for more than a few of
 // them.
 #include "support/inserts.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A sort by an expression whose value changes from call to call loses no record, and neither does
 // any class of lists.
 #include "support/inserts.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Records with equal keys are ordered by their members, whichever member decides, in every list.
 #include <bit>
 #include <cmath>

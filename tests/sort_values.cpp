@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The expression of sort_by uses values by their names. Kernels take values as arguments.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A sort that has no memory for some of its buffers sorts every list all the same.
 #include "support/inserts.hpp"
 #include "support/storages.hpp"

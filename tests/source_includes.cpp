@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A device keeps programs, but none that includes other files: these may change while the program
 // runs.
 #include <filesystem>

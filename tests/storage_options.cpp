@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a container starts with where its options say nothing, for each storage, and which options
 // go together.
 #include "support/errors.hpp"

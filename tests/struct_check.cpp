@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A struct whose layouts differ, or that is called like another, is refused.
 #include "support/errors.hpp"
 #include "support/inserts.hpp"

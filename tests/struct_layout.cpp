@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Adapted structs have the same members at the same places on the host and on the device.
 #include <cstdint>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Members may have any name that C allows, and words that OpenCL C reserves are named in the error.
 #include "support/errors.hpp"
 #include "support/inserts.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Several threads, each with its own objects, share a Device or have one each.
 #include <thread>
 

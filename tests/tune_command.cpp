@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `cellist tune` as it is called: what it prints and writes, and how it refuses.
 #include <array>
 #include <cstdio>

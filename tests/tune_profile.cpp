@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The file in which `cellist tune` keeps what it measured: whatever else stands in its place counts
 // as none.
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Storage::counted runs a kernel twice. One that inserts other records the second time ends in an
 // error, writes nowhere but into the places of the cells that it inserts into, and leaves the
 // container usable.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // nearest() runs a kernel to rank and to fill. One that inserts other records the second time
 // ends in an error, unless it cannot be told, and leaves the container usable.
 #include "support/errors.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // validate() accepts sound lists and finds every kind of corruption, without hanging or crashing.
 #include "support/errors.hpp"
 #include "support/inserts.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A record or a container of another struct than the lists' does not compile: the error names both
 // structs and the user's line.
 #include "support/errors.hpp"

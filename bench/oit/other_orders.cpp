@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "oit/other_orders.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "oit/plain_cpp.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The steps of the Boost.Compute path after its sort: bounds, and one read of every list.
 
 // Finds where each cell's items begin in sorted cells. One work-item for each item and one more;

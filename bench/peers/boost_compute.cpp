@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Boost.Compute on the same device: sort_by_key of the records by their cell, then bounds and one
 // read. Values are the records, padded to 16 bytes, or indices through which the records are read.
 // Host time; the input is in memory. Each run reads once more, to time the read alone.

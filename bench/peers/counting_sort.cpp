@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Plain C++: two counting sorts on all threads.
 //
 //   direct        a histogram of the cells for each thread, prefix sums over cells and threads,

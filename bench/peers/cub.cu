@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // CUB on an NVIDIA GPU, as a separate program. It sorts the same input as cellist_bench, and prints
 // the times in the JSON of Google Benchmark.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Plain C++ with oneTBB: tbb::parallel_sort of all items by their cell, then bounds and one read.
 
 #include <tbb/global_control.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "peers/peer.hpp"
 
 namespace bench::peers {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 
 // Shared by the peers in plain C++. Each peer puts the records of a workload into contiguous lists,

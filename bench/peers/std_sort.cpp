@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Plain C++: std::sort. One case sorts all items by their cell on one thread, with bounds and one
 // read. The other sorts every list separately, on all threads.
 

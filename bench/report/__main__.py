@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Results, tables and plots of the benchmarks; scripts/bench calls it.
 
   merge --effort E --git HASH [--note TEXT] --out RESULTS.json OUTPUT.json...

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Tables and plots in the documentation, generated from bench/results/*.json.
 
 A table stands between the lines `<!-- results: NAME -->` and `<!-- end of results -->`. Results of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Results of the benchmarks of transparency: a dictionary that is stored as JSON.
 
   device, driver, platform, kind ("gpu" or "cpu"), threads

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Tables of transparency: as text for people who run the benchmarks, and as Markdown for
 documents."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Plots of results, as SVG."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The ratios that judge the library, with their goals, from the figures of one run.
 
 A ratio is {name, case, value, goal, better, ours, theirs}. `better` is "higher" or "lower". `ours`

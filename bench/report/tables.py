@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Tables of results, for a terminal and for the documentation."""
 
 import re

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The cell and the words of the i-th insert. Compiled as OpenCL C, C++ and CUDA, so that every
 // device and every peer has the same input.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Writes the cells and records of a workload to arrays. `cells` and `records` have one element for
 // each work-item.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "support/moved_bytes.hpp"
 
 namespace bench {

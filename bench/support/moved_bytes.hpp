@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 
 // The least number of bytes that operations must move: records, nodes, heads, counters and results,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "support/timing.hpp"
 
 #include <algorithm>

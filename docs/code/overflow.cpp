@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <cellist/cellist.hpp>
 
 #include "check.hpp"

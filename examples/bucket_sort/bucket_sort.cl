@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Bucket sort: every record goes to the list of its bucket, every list is sorted, and the lists are
 // packed behind one another.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Bucket sort of keys with payloads, checked against std::sort.
 #include <algorithm>
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "accumulate.hpp"
 
 #include <cmath>

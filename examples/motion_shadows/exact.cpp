@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Ranges of time in which triangles cover the centres of texels, and depth from the moving plane.
 #include "method.hpp"
 #include "motion_kernels.hpp"

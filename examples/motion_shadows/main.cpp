@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Motion-blurred shadows from depth-time ranges, and from other methods.
 #include <iostream>
 #include <vector>

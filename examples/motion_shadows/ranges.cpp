@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Depth-time ranges as in the paper: Hong and Oh, "Motion-Blurred Shadows Utilizing a Depth-Time
 // Ranges Shadow Map", Journal of Information Processing Systems 14(4), 2018.
 #include "method.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "self_shadow.hpp"
 
 #include <algorithm>

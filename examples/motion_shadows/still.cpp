@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A shadow map of the middle of the exposure.
 #include "method.hpp"
 #include "motion_kernels.hpp"

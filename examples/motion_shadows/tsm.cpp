@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Time-dependent shadow maps: a depth for each sample of a texel, at the sample's own time.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "view.hpp"
 
 #include <glm/geometric.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Neighbour search with cell lists, checked against a k-d tree.
 #include <algorithm>
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Neighbour search with cell lists: every particle goes to the list of its cell, and its neighbours
 // are looked for in the lists of the cells around it.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Indirect light of one bounce, and what of it is blocked (Yang, Hensley, Gruen, Thibieroz:
 // "Real-Time Concurrent Linked List Construction on the GPU", EGSR 2010, section 4.2).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One-bounce indirect light, with shadows by rays through a grid of triangle lists.
 #include <algorithm>
 #include <iostream>

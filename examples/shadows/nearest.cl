@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pass: the least key of each pixel.
 #pragma OPENCL EXTENSION cl_khr_int64_extended_atomics : enable
 

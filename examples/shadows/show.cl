@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One work-item a pixel.
 kernel void clear_surfaces(global Surface* surfaces, uint count) {
     const uint i = get_global_id(0);

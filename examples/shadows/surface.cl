@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pass: the surface of the fragment that has the least key.
 #define RASTER_TARGET SURFACES_TARGET
 #define RASTER_TARGET_PASS SURFACES_TARGET_PASS

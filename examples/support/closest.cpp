@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "closest.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Writes OpenEXR files: a header of attributes, the offsets of all lines, and the lines. Each line
 // has its channels one after the other. All numbers are little endian.
 #include <bit>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image_difference.hpp"
 
 #include <algorithm>

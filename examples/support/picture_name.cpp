@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "picture_name.hpp"
 
 #include "files.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The second pass: blends the sorted list of each pixel, front to back, over the background.
 
 #include <cellist/glm.clh>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The first pass: each fragment of each triangle goes into the list of its pixel.
 //
 // The rasteriser calls raster_emit() for every pixel that a triangle covers, in any order and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Order-independent transparency with one list per pixel: the whole of it.
 #include <iostream>
 #include <optional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Triangles in the cells of a 3D grid, and segments that ask whether anything is in their way;
 // checked against every triangle, or against Embree.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A picture of a mesh on a floor: sunlight with soft shadows, and light from the sky where the sky
 // is seen (ambient occlusion). All visibility comes from segments through the grid. One work-item a
 // pixel.

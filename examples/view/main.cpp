@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Shows what cellist-oit, cellist-shadows and cellist-motion-shadows draw, in a window.
 #include <algorithm>
 #include <charconv>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // cellist: concurrent per-cell lists for OpenCL devices.
 

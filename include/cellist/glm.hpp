@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Allows GLM's vectors and matrices as members of adapted structs.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Includes the OpenCL C++ bindings with the settings that cellist needs: exceptions, and interfaces
 // up to OpenCL 3.0. Include this header instead of <CL/opencl.hpp>, or set the same macros first.

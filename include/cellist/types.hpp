@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Types for members and values that C++ cannot tell from others: `cl_half` is `cl_ushort`, and
 // `cl_float3` is `cl_float4`.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the host and the device must agree on about a container. Compiled as C++ and as OpenCL C.
 #ifndef CELLIST_VIEW_H
 #define CELLIST_VIEW_H

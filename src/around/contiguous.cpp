@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "around/contiguous.hpp"
 
 #include "device/reserve.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The program `cellist`: lists the OpenCL devices of this machine, checks that cellist works on
 // them, and measures its storages there.
 

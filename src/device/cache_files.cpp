@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "device/cache_files.hpp"
 
 #include <cerrno>

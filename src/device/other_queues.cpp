@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "device/other_queues.hpp"
 
 #include <algorithm>

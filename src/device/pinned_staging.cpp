@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "device/pinned_staging.hpp"
 
 #include <utility>

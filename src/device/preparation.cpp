@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "device/preparation.hpp"
 
 #include <cellist/error.hpp>

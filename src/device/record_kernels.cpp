@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "device/record_kernels.hpp"
 
 #include <utility>

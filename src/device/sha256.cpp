@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "device/sha256.hpp"
 
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "expression/expression.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What adds records to lists, and removes some.
 #include "lists/append.hpp"
 

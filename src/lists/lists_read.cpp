@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Lengths and copies of the lists.
 #include <algorithm>
 #include <utility>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <cellist/error.hpp>
 #include <cellist/shape.hpp>
 

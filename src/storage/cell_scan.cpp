@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "storage/cell_scan.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "storage/container_storage.hpp"
 
 namespace cellist::detail {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "storage/node_pool.hpp"
 
 #include <algorithm>

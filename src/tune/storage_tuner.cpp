@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tune/storage_tuner.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The benchmarks of transparency run through on small pictures, and their goals and tables come out of
 figures as they should. Times are not looked at. The first argument is the folder of the build; without it
 nothing is run."""

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Ratios, tables and plots come out of figures as they should. The figures are made up, and what they
 come to is worked out by hand."""
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // error: OpenCL C has no bool parameters: pass a cl_uint
 #include <cellist/cellist.hpp>
 

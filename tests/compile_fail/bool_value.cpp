@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // error: OpenCL C has no bool of a fixed size
 #include <cellist/value.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // error: a Buffer holds trivially copyable elements
 #include <string>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Compiles without a warning, whatever the user's flags: every public header, and every function
 // template. The flags stand in CMakeLists.txt.
 #include <cellist/buffer.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Compiles. Each other file has one mistake, which the compiler must explain as its first line
 // says.
 #include <cellist/cellist.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // error: decomposes into 3 elements
 #include <cellist/struct.hpp>
 

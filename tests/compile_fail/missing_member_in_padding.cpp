@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // error: CELLIST_STRUCT: Point has more members than are named
 #include <cellist/cellist.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // error: CELLIST_STRUCT: Hit must be trivially copyable and of standard layout
 #include <cellist/cellist.hpp>
 

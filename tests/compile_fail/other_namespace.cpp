@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // error: CELLIST_STRUCT stands in the struct's own namespace, with its plain name
 #include <cellist/cellist.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // error: records are ordered by a scalar member, or by an expression
 #include <cellist/cellist.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // error: type has no counterpart in OpenCL C
 #include <cellist/cellist.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // error: adapt the record with CELLIST_STRUCT first
 #include <cellist/cellist.hpp>
 

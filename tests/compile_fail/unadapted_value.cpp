@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // error: adapt it with CELLIST_STRUCT
 #include <cellist/value.hpp>
 

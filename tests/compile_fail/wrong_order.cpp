@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // error: CELLIST_STRUCT: the layout of Hit differs from OpenCL C's
 #include <cellist/cellist.hpp>
 

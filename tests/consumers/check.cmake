@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Configures, builds and runs one outside project against this cellist.
 #
 #   way          find_package, fetch_content or add_subdirectory

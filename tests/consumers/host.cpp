@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Loads the plug-in, and catches an error of the library that is thrown in it.
 #include <cstdio>
 

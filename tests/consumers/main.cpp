@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Inserts the numbers 0 ... 999 into 10 cells by their last digit, and reads them back.
 #include <cstdio>
 #include <exception>

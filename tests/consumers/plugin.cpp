@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A plug-in with a single function. It exports no symbol of the library that it links.
 #include <cellist/cellist.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The bucket sort sorts, whatever the keys and payloads.
 #include "bucket_sort.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The neighbour search finds every neighbour, wherever the points are.
 #include <cmath>
 #include <limits>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Fails unless a program refuses its arguments: exit code 1, nothing on stdout, and one line on
 # stderr that names the program and the last argument.
 separate_arguments(arguments UNIX_COMMAND "${arguments}")

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Fails unless a program says its version, and ends with exit code 1 and one line on stderr where
 # stdout is full.
 separate_arguments(arguments UNIX_COMMAND "${arguments}")

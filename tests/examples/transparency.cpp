@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The example `transparency` draws what rays against all triangles see, in double precision.
 #include "transparency.hpp"
 

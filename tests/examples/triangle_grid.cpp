@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Asking a grid gives the same answers as asking every triangle.
 #include "examples/triangle_grid.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What tests of triangle grids share: meshes, and a comparison with every triangle in double.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Grids at their limits; docs/numerics.md names these tests.
 #include <cmath>
 #include <limits>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Triangles are in the list of every cell that they touch, and of few others.
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Builds, of every kind.
 #include <optional>
 

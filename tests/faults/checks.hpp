@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // What results must be. There is no INFO in these: it would outlive each OpenCL error that passes
 // it.

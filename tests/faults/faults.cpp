@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where an OpenCL call fails, whichever it is, the library throws OpenClError that names the call,
 // and leaks nothing; the container keeps its lists or is empty, and then does the same work as
 // ever.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the drivers' entry points are replaced by: see layer.hpp. The loader's side of a layer is
 // CL/cl_layer.h, the list of entry points CL/cl_icd.h.
 #define CL_TARGET_OPENCL_VERSION 300

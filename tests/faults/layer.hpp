@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The fault layer: an OpenCL layer that the loader puts between a program and the drivers where the
 // environment variable OPENCL_LAYERS names it. It makes chosen calls fail, and counts the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Work that makes all objects that it needs, from the first to the last.
 #include <optional>
 #include <utility>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Operations on objects other than lists, and on empty lists.
 #include <span>
 

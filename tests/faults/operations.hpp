@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // What the library is asked to do while OpenCL calls fail.
 

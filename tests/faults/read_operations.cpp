@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What reads lists.
 #include "checks.hpp"
 #include "layer.hpp"

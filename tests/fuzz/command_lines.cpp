@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The command lines of the programs. Input: lines. The first is the name of a program, the others
 // are its arguments; a backslash at the end of a line continues the argument on the next. The
 // program runs in this process, without any OpenCL platform, so that it ends where it would choose

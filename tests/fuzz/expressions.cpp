@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Expressions of sort_by. Input: 'g' and bytes that choose an expression of a small grammar, whose
 // values are computed here too; or any text, which is sorted by, or refused.
 #include <algorithm>

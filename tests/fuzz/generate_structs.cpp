@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Writes the C++ source of a program's structs: generate_structs COUNT > structs.hpp
 //
 // Each struct S<n> has random members in random order, CELLIST_STRUCT, a function that visits its

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Generated structs on the device: the host fills them and the device takes them apart, the device
 // puts them together and inserts them, and the host takes the download apart. Every scalar is
 // compared, byte for byte, through the members' names in both languages.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Runs a target on the files of folders, without a fuzzer: replay NAME FOLDER...
 #include <algorithm>
 #include <filesystem>

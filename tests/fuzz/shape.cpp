@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Shape against arithmetic in 128 bits.
 //
 // Input: the number of extents, the extents, the number of coordinates, the coordinates.

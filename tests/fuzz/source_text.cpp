@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sources and compilers' logs of any content. Input: 'k' and what stands in a comment, a message
 // and the name of a kernel that is built; or a text for the functions that take sources and logs
 // apart.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Structs of any members: the library's definition of them against the alignment rules of OpenCL C
 // and x86-64, which stand in this file, and against what the device says.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Small files that ask for much depth, work or memory are refused, or drawn, in good time.
 #include "meshes/support/gltf_text.hpp"
 #include "meshes/support/loaded.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Work in a child process ends with its result or with an error, whatever happens in it.
 #include "child_process.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Colours of PLY and OFF files: bytes are sRGB, numbers with a fraction are linear.
 #include <glm/vec4.hpp>
 

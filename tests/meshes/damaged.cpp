@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Damaged PLY, OFF and STL files are refused with the place of the damage, or loaded with a count
 // of what is missing.
 #include "meshes/support/loaded.hpp"

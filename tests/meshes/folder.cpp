@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Of the files that a mesh file names, only those in its folder are read. Messages show nothing of
 // others.
 #include "meshes/support/gltf_text.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // glTF and GLB files of every layout give the mesh that they were made from. Cut and damaged ones
 // are refused.
 

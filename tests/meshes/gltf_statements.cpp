@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a glTF file has besides triangles: skins, scenes, indices, extensions. Anything unsupported
 // or inconsistent is refused with its place.
 #include "meshes/support/gltf_text.hpp"

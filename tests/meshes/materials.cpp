@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Base colours and opacities from MTL files, glTF files and the formats that Assimp reads.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // OBJ statements: what is drawn, what is dropped and counted, and what is refused with its line.
 #include <cmath>
 

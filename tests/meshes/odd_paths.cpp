@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A path that is not a regular file is refused in one line, without waiting.
 #include <sys/socket.h>
 #include <sys/stat.h>

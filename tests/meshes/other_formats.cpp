@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Assimp's formats load with their transforms and materials. A file that Assimp cannot read is an
 // error.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Polygons of any shape are split into triangles that cover exactly their inside.
 #include <random>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // STL files of every layout give the mesh that they were made from. Cut and damaged ones are
 // refused.
 #include <cctype>

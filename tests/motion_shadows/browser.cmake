@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Opens the page of cellist-motion-shadows in a browser: plots, tables and pictures are there.
 #
 #   browser    Chromium, or one of its kind

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Merged ranges against those that they are made from, and pictures in slices against whole ones.
 #include <algorithm>
 #include <bit>

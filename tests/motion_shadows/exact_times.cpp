@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The time for which a receiver is in shadow: ranges from the device against roots in double
 // precision. CELLIST_TEST_PAIRS sets the number of pairs of texels and receivers.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Triangles, motions and settings at their limits.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The light's ray through a texel meets the prism of a moving triangle an even number of times, and
 // pairs of these fragments are depth-time ranges.
 #include <algorithm>

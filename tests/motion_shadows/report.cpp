@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the program writes: JSON with a documented key for each figure, pictures, CSV and a page.
 #include "report.hpp"
 

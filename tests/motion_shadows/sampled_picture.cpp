@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the samples of a picture see, and whether they are in shadow: the device against double
 // precision, with all triangles that come near.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The scenes hold closed bodies that move over ground that stays, in the field of their light.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pixels count as self-shadowed where they are darker than the reference allows by chance.
 #include "self_shadow.hpp"
 

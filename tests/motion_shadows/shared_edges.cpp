@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Triangles that share a moving edge: exactly one of them covers a place near the edge at each
 // time. Their ranges neither overlap nor leave a gap.
 #include <algorithm>

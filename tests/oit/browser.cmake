@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Opens the report of cellist-tradeoff in a browser: it shows what the address asks for.
 #
 #   browser    Chromium, or one of its kind

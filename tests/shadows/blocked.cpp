@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is blocked is dark, and nothing else is.
 #include "reference.hpp"
 #include "shadows/support/squares.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Samples of the reflective shadow map send the light that theory says.
 #include <algorithm>
 #include <cmath>

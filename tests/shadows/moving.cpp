@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The grid follows what moves, and the same frame is the same picture.
 #include <algorithm>
 #include <cstring>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every ray of B gets the exact answer, and each sample is asked once.
 #include <map>
 #include <set>

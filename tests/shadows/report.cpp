@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the program writes: JSON with a documented key for each figure, and pictures.
 #include "report.hpp"
 

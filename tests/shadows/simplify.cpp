@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Merged vertices leave closed meshes closed, and stay in their cells.
 #include <map>
 

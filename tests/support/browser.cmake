@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Opens a page in a browser without a window. Fails where its script did not run to its end without
 # an error, or where the document has no match of one of the regular expressions that follow.
 #

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 
 // What tests reach that users do not: the division of sorts, the tuner, and what a device is.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #define CELLIST_TESTS_MAIN
 #include <exception>
 #include <iostream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Command lines of the programs: read, changed and written.
 #include "program/arguments.hpp"
 

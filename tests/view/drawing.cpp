@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The thread that draws: pictures are those of the programs, and errors are answers.
 #include <chrono>
 #include <semaphore>

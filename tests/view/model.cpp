@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What inputs change: settings of both sides, camera, time, and what the keys do.
 #include "model/model.hpp"
 

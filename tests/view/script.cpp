@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Scripts: which lines are commands, and what is refused.
 #include "model/script.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The window, driven by scripts under Xvfb with Mesa's software OpenGL.
 #include <cstdlib>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // All layers in float nodes against the reference in double precision, for every scene.
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Linked lists on the device against plain C++ on one thread. The picture of plain C++ is compared
 // with the reference before the measurement.
 

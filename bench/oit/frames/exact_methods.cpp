@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every exact method against linked lists, with all layers and the same rasteriser: Table 1 of Yang
 // et al. 2010.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The nearest layers against all layers: the gain in time and the loss in the picture.
 
 #include <array>

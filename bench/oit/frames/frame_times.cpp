@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Whole frames with all layers in lists, from the vertices to the image on the device. First the
 // host waits after each frame. Then it enqueues one frame while the device draws the other.
 

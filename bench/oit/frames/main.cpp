@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Measures speed and accuracy of transparency for docs/transparency-results.md. CELLIST_DEVICE
 // names the device.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "oit/frames/run.hpp"
 
 #include <algorithm>

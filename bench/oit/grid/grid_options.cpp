@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "grid_options.hpp"
 
 #include "command_line.hpp"

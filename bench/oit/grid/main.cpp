@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Compares the choice of --budget with all settings, for ten scenes and views.
 #include <algorithm>
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Instances of one mesh: 64 rings of glass in a cube, each turned another way.
 #include <numbers>
 

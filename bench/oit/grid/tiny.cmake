@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Runs cellist-budget-grid on one small scene. Checks that budgets are kept and that the JSON can be
 # read, but not the cost of settings.
 execute_process(

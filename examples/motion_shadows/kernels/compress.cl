@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Merges ranges that touch in time and depth where one line in time is close to their depths.
 // Leaves out a merged range that another open one hides for all of its time. So a texel has fewer
 // ranges, and the error of their depths stays within the tolerance.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pairs fragments of the same prism into depth-time ranges (Hong and Oh, 2018, section 4.3).
 
 // Counts a fragment without a partner: the lists reject it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Projects vertices to a view. A vertex becomes NaN if it is infinite, NaN, or so far away that
 // squares of edge functions would overflow.
 static float4 project_position(const View view, float3 position) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Makes the picture from samples. sums[pixel] is linear RGB and the number of samples in shadow.
 
 // One work-item a pixel: adds the samples of a batch.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pass: the nearest triangle at each sample of a pixel, at the sample's own place and time
 // (stochastic rasterisation: McGuire, Enderton, Shirley, Luebke, 2010).
 // keys[sample * pixels + pixel]: see keys.clh.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pass: the times at which triangles cover the centres of texels.
 #define SWEEP_TARGET CELLIST_LISTS(VisibleRange, ranges), global const float* farthest
 #define SWEEP_TARGET_PASS CELLIST_PASS(ranges), farthest

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pass: fragments of the prism of a moving triangle at the centres of texels (Hong and Oh, 2018,
 // section 4.1). The prism is the triangle at t = 0 and at t = 1, and a side for each edge. A
 // side has four facets, which meet in its centre.

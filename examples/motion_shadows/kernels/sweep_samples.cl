@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pass: the nearest depth at each sample of a texel, at the sample's own time: a time-dependent
 // shadow map (Akenine-Moeller, Munkberg, Hasselgren: "Stochastic rasterization using
 // time-continuous triangles", 2007; McGuire, Enderton, Shirley, Luebke: "Real-time stochastic

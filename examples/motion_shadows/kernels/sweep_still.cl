@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pass: the nearest triangle at one time, at the same place in each pixel. keys[pixel]: see
 // keys.clh.
 #pragma OPENCL EXTENSION cl_khr_int64_extended_atomics : enable

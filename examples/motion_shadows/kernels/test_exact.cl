@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Shadow test: a triangle covers the texel at the sample's time, and is nearer at that time.
 #define TEST_TARGET CELLIST_LISTS(VisibleRange, ranges)
 #define TEST_TARGET_PASS CELLIST_PASS(ranges)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Shadow test: a merged range is nearer at the sample's time.
 #define TEST_TARGET CELLIST_LISTS(DepthPiece, pieces)
 #define TEST_TARGET_PASS CELLIST_PASS(pieces)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Shadow test: a depth-time range is nearer at the sample's time (Hong and Oh, 2018, section 3.3).
 #define TEST_TARGET CELLIST_LISTS(DepthTimeRange, ranges)
 #define TEST_TARGET_PASS CELLIST_PASS(ranges)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Shadow test: the texel's sample in the same part of the exposure is nearer.
 #define TEST_TARGET global const uint* depths
 #define TEST_TARGET_PASS depths

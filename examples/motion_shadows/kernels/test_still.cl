@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Shadow test: the triangle in a shadow map of one moment is nearer.
 #define TEST_TARGET global const ulong* keys
 #define TEST_TARGET_PASS keys

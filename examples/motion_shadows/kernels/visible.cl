@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Turns what the camera sees at each sample into receivers: receivers[sample * pixels + pixel].
 
 // One work-item a sample. farthest[texel] becomes the greatest limit of the texel's receivers: what

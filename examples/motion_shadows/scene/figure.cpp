@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "figure.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "surface_nets.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Fog between the layers: light is lost with the distance, and the more the bluer it is.
 static void blend(const OitFragment* fragment, float distance, float3* colour,
                   float3* transmittance) {

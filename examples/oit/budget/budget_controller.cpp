@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "budget/budget_controller.hpp"
 
 #include <algorithm>

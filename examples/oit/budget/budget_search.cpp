@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "budget/budget_search.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "budget/final_rounds.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "budget/measurement.hpp"
 
 #include <exception>

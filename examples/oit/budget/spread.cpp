@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "budget/spread.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One frame, with all layers in float, and what of it is how certain.
 //
 // Reads lists sorted by key, of fragments that are in front of the opaque surfaces or so little

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How far a picture is from the survey's, and from the truth at most. metrics: see metrics.clh;
 // bounds are those errors without and with what depends on an order that float depths do not tell;
 // the third sum counts the pixels in which this makes an error greater than the limit.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The mean of the samples of each pixel.
 kernel void oit_average(global const float4* samples, global float4* image, uint pixels) {
     const size_t pixel = get_global_id(0);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is behind all transparent surfaces.
 kernel void oit_backdrop(OIT_SCREEN) {
     OitPixel pixel;

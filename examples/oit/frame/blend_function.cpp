@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "frame/blend_function.hpp"
 
 #include <string_view>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "frame/fragment_source.hpp"
 
 #include "frame/blend_function.hpp"

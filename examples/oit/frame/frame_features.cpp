@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "frame/frame_features.hpp"
 
 #include <algorithm>

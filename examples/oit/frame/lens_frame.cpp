@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "frame/lens_frame.hpp"
 
 #include <algorithm>

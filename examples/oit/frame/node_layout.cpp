@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "frame/node_layout.hpp"
 
 #include <bit>

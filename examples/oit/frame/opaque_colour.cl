@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pass: the colour of each sample's opaque surface, from the piece that owns it.
 #define RASTER_TARGET                                                                              \
     global const uint *owners, global const uint *depth_bits, global float4 *colour,               \

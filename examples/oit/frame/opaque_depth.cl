@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pass: the least depth of the opaque surfaces in each sample, as the bits of a float. Depths are
 // positive, so their bits are ordered as they are. Filled with the bits of infinity before.
 #define RASTER_TARGET volatile global uint* depth_bits

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pass: of the pieces of opaque triangles at the least depth of a sample, the first. Filled with
 // the greatest number before.
 #define RASTER_TARGET volatile global uint *owners, global const uint *depth_bits

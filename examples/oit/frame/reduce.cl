@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Between the full image and the reduced one, each of whose pixels stands for OIT_BLOCK x OIT_BLOCK
 // of the full one's.
 

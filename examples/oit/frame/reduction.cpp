@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "frame/reduction.hpp"
 
 #include "input_error.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "methods/accumulating.hpp"
 
 #include "input_error.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Adaptive transparency (Salvi, Montgomery, Lefohn, HPG 2011): how much light reaches a depth is
 // kept as a step function of at most OIT_STEPS steps; where there are more, the one goes whose loss
 // changes the area under the function least. Fragments come from lists sorted by key, so that the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How much light reaches a depth is kept as a function of a few steps.
 #include <array>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Depth of field from one picture with one depth a pixel: a gather over the circle of confusion
 // (Potmesil, Chakravarty 1981), in which a neighbour counts if its own circle reaches the pixel.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Depth of field without layers, from the pinhole picture and the depth of the nearest surface in
 // each pixel.
 #include "methods/lens_ranges.hpp"

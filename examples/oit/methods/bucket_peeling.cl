@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Bucket depth peeling: each pass takes the nearest layer of each of OIT_BUCKETS ranges of depth.
 // Behind a range with more than one layer the order of the others is not known, so what is behind
 // it is taken again by the next passes, which divide what is left anew.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Each pass takes a layer of each of several ranges of depth.
 #include <array>
 #include <bit>

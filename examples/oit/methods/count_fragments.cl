@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How many fragments there are in each pixel.
 #define OIT_TARGET volatile global uint* counts
 #define OIT_TARGET_PASS counts

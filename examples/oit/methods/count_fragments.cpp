@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "methods/count_fragments.hpp"
 
 #include "oit_kernels.hpp"

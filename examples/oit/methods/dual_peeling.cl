@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Dual depth peeling: each pass takes the nearest and the farthest layer that are left. A pixel has
 // two of each: what is in front, then what is behind.
 //   current  keys of the layers that this pass takes; OIT_FIRST_KEY and OIT_LAST_KEY at the start

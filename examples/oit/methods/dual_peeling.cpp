@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The scene is drawn once for every two layers, and takes the nearest and the farthest that are
 // left.
 #include "methods/peeling_common.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The nearest layers of each pixel in slots, and nothing of the others: as many as the size
 // says, Quality::layers, or 8.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Depth of field from the fragments of each pixel of one pinhole picture, by rays through the lens
 // (Lee, Eisemann, Seidel, SIGGRAPH 2010, with planes instead of slabs of depth).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "methods/lens_gather.hpp"
 
 #include <utility>

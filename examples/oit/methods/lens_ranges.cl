@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Spreads the range of each tile to the tiles in its row, or column, that may see its surfaces.
 kernel void oit_spread_ranges(global const uint2* ranges, global uint2* spread, const int along_y,
                               const float scale, const float focus) {

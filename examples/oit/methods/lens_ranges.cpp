@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "methods/lens_ranges.hpp"
 
 #include "frame/views.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "methods/list_slices.hpp"
 
 #include <algorithm>

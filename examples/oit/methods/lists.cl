@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The methods that keep every fragment in a list of its pixel, whatever the storage (Yang et al.
 // 2010, section 4.1). A container of shape width x height, or width x height x eyes.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The methods that keep every fragment in a list of its pixel, and what they share with others.
 #include "methods/lists.hpp"
 

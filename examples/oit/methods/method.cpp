@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "methods/method.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Moment-based transparency (Muenstermann, Krumpen, Klein, Peters: "Moment-Based Order-Independent
 // Transparency", I3D 2018), with four power moments. The first pass sums the absorbances of the
 // fragments of a sample, each times powers of depth; the second finds from these sums how much

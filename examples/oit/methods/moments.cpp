@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How much light reaches a depth is found from four moments of the absorbance in front.
 #include "methods/accumulating.hpp"
 #include "oit_kernels.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Peels the nearest layers of each pixel and keeps them for rays through a lens (see lens.cl).
 //   current, next  as in peeling.cl
 //   kept           the nodes of the nearest layer of each pixel, then of the second, and so on

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Depth of field from the nearest layers of each pixel, found by depth peeling. The scene is drawn
 // once for each layer, and once before the first.
 #include <array>

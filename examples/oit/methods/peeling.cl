@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Depth peeling. A pixel has
 //   current  key of the layer that this pass takes; OIT_FIRST_KEY at the start, OIT_LAST_KEY at
 //            the end

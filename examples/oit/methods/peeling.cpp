@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The scene is drawn once for each layer, and takes the nearest that is behind the last.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "methods/peeling_common.hpp"
 
 #include "input_error.hpp"

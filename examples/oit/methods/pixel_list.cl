@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The fragments of one pixel: a list in a container of one cell.
 #define OIT_TARGET CELLIST_LISTS(PixelFragment, fragments), uint wanted
 #define OIT_TARGET_PASS CELLIST_PASS(fragments), wanted

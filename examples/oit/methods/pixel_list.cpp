@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "methods/pixel_list.hpp"
 
 #include "oit_kernels.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Depth of field by brute force: the mean of pinhole pictures from places on the lens (Haeberli,
 // Akeley, SIGGRAPH 1990).
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "methods/renderer.hpp"
 
 #include "input_error.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Stochastic transparency (Enderton, Sintorn, Shirley, Luebke, I3D 2010), with its depth-based
 // accumulation and its correction of opacity. A fragment of opacity alpha hides what is behind it
 // in each of OIT_TRIALS trials with that probability; its colour counts for the part of the trials

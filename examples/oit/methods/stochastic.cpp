@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Fragments hide each other at random, in a number of trials.
 #include <array>
 

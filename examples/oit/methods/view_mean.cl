@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Adds `part` times a picture to the sum.
 kernel void oit_add_picture(global const float4* picture, global float4* sum, uint pixels,
                             float part) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "methods/view_mean.hpp"
 
 #include "frame/views.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Weighted blended transparency (McGuire, Bavoil: "Weighted Blended Order-Independent
 // Transparency", JCGT 2013, equations 7 and 10): the mean of all colours, weighted by opacity and
 // nearness, in place of their order. The weights are those of the paper, divided by the greatest.

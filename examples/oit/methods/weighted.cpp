@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A weighted mean of all fragments, in one pass.
 #include "methods/accumulating.hpp"
 #include "oit_kernels.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "report/choice_report.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "report/frame_json.hpp"
 
 #include <array>

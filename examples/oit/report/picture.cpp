@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "report/picture.hpp"
 
 #include "heat_map.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A still life of every way to blend: bottles whose content absorbs, filters that multiply, flames
 // that add and glass that covers, on a tray and before rods that are opaque.
 #include <algorithm>

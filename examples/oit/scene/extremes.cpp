@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Small scenes, each at a limit of what numbers can hold.
 #include <cmath>
 #include <limits>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A gearbox: a shaft in the middle whose gears drive those on six shafts around it, with glass
 // gears, sleeves, drums and a glass case, and a metal core, bearings and bolts. In the spirit of
 // the mecha in Yang et al. 2010, figure 3: 602,000 triangles, 254,000 of them transparent, up to 64

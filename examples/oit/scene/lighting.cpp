@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "scene/lighting.hpp"
 
 namespace oit {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "scene/mesh_materials.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "scene/scenes.hpp"
 
 #include <algorithm>

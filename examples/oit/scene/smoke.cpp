@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Surfaces of smoke: rings of particles that rise through an analytic flow leave surfaces behind
 // them, the thinner the more the flow stretches them (von Funck, Weinkauf, Theisel, Seidel: "Smoke
 // Surfaces", IEEE TVCG 2008, section 3).

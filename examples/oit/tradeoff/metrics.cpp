@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tradeoff/metrics.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tradeoff/page.hpp"
 
 #include "image.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tradeoff/sweep.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tradeoff/tradeoff_options.hpp"
 
 #include <algorithm>

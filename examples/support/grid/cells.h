@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Limits of the grid that the host and the device must agree on. Compiled as C++ and as OpenCL C.
 #ifndef GRID_CELLS_H
 #define GRID_CELLS_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "grid/exact.hpp"
 
 #include <algorithm>

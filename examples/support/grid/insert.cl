@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Puts every triangle into the list of each cell that it comes closer to than GRID_MARGIN. A
 // triangle that is not finite is rejected. One that reaches out of the grid is in the list of
 // those, too.

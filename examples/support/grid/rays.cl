@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Many segments at once. Two kernels: the first decides nearly all segments in float, and leaves
 // the rest to the second, which decides exactly. With exact tests for a three-hundredth of the
 // segments, the first kernel would take 1.35 to 1.43 times as long on an H200. A third kernel

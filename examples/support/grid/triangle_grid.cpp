@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "grid/triangle_grid.hpp"
 
 #include <algorithm>

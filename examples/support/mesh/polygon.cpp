@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "polygon.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "raw_mesh_bytes.hpp"
 
 #include <algorithm>

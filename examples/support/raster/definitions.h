@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What host and device agree on. Compiled by C++ and by OpenCL C.
 //
 // Screen coordinates count sub-pixels of 1/256 pixel, x to the right and y down, from the upper

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "raster/rasteriser.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What comes before drawing: vertices are projected, and triangles are clipped and binned.
 
 // ---- projection ---------------------------------------------------------------------------------

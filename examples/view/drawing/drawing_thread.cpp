@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drawing/drawing_thread.hpp"
 
 #include <algorithm>

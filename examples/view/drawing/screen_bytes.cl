@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Linear pictures as 8-bit sRGB for a window.
 //
 // picture: eye by eye, row by row from the top. encoded: the bytes of linear values, evenly spaced

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drawing/side_drawer.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "model/script.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/control.hpp"
 
 #include "closest.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Motion-blurred shadows: cellist-motion-shadows.
 #include <algorithm>
 #include <memory>

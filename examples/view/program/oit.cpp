@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Order-independent transparency: cellist-oit.
 #include <memory>
 

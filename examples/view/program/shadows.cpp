@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One-bounce indirect light with shadows: cellist-shadows.
 #include <memory>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "window/control_widgets.hpp"
 
 #include <algorithm>

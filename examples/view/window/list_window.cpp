@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "window/list_window.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 
 /// What a shared library exports. A static library exports nothing, also not from a plug-in that

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 
 // CELLIST_FOR_EACH(macro, fixed, a, b, ...) expands to macro(fixed, a) macro(fixed, b) ..., for up

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A budget is met against the reference in double precision, again after the view has changed, and
 // where no setting meets it, that is said.
 #include "budget/budget.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Settings are those that a frame can have, and measuring one tells what it costs and gives.
 #include <algorithm>
 #include <array>

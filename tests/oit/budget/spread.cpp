@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Times choose a setting only as far as they tell settings apart; the plainest of the others is
 // chosen.
 #include "budget/spread.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a survey promises of a picture holds against the reference in double precision.
 #include "budget/survey.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Frames agree with the reference in double precision.
 #include <filesystem>
 

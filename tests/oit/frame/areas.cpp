@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // With exact coverage, a surface counts by the area of each pixel that it covers.
 #include <cmath>
 

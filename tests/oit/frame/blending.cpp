@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every way of blending agrees with the reference, alone and mixed with others.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pictures with exact coverage: near to pictures of many samples, and the same bits however they
 // are drawn.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Nodes of every format hold what they promise, in as few words as the frame allows.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // With exact coverage, opaque surfaces hide exactly the areas that they cover.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What docs/numerics.md promises of numbers at their limits holds on the device.
 #include "oit/support/numerics.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Transparent surfaces at reduced resolution keep the edges of the opaque ones sharp.
 #include <cmath>
 

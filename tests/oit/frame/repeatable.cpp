@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The same frame is the same bits, run after run.
 #include <algorithm>
 #include <cstring>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A lens and sub-pixels move a view as a pinhole camera at another place sees it.
 #include "frame/views.hpp"
 

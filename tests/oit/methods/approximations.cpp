@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every approximation draws what its paper defines.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The layers of each pixel are those of the reference, whatever the method stores.
 #include "camera.hpp"
 #include "methods/renderer.hpp"

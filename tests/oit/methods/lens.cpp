@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pictures through a lens match formulas, and means of pinhole pictures.
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Under a bound on memory, lists are drawn in slices, and the picture is the same to the last bit.
 #include <cstring>
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every method of the table draws what it promises.
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Lists that fit, but not with room to spare, are drawn in every frame as in the first.
 #include <cstring>
 

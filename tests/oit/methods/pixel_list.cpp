@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The list of one pixel: all its fragments, and the picture's pixel is what they blend to.
 #include "methods/pixel_list.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A pixel is covered if its centre is in the triangle; centres on an edge belong to the left and
 // top.
 #include "oit/support/screen.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // With exact coverage, a triangle has a fragment in every pixel of which it overlaps a part.
 #include "oit/support/polygons.hpp"
 #include "support/catch.hpp"

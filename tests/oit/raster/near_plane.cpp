@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Surfaces that pass behind the eye are cut at the near plane, and surfaces of any size are drawn.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pixels of 2, 4 and 8 samples: which are covered, how they are blended, and what depths in each
 // sample are good for.
 #include <algorithm>

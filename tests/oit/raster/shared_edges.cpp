@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Triangles that share edges leave no gap and cover no pixel twice.
 #include <algorithm>
 #include <cmath>

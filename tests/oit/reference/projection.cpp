@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The reference projects and clips with code of its own: it agrees with real numbers, and the
 // rasteriser agrees with it where the near plane and the guard band cut triangles.
 #include "reference/projection.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The structural similarity is that of Wang et al. 2004.
 #include "ssim.hpp"
 

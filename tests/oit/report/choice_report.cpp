@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the screen says of a choice is true of it, and nothing is cut without a word.
 #include "report/choice_report.hpp"
 

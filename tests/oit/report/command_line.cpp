@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The program refuses what it cannot do, in one line that names the value.
 #include <tuple>
 #include <utility>

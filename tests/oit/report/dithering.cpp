@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Flat parts of 8-bit pictures are dithered: backgrounds have no bands, and means are right.
 #include <cmath>
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // docs/transparency.md has every method, every scene and every option that there is.
 #include <regex>
 #include <set>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A file is written whole or not at all, and what is read has an end.
 #include "files.hpp"
 

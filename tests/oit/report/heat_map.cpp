@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A heat map shows each value at its place, and its scale tells which value a colour is.
 #include "heat_map.hpp"
 

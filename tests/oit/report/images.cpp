@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A picture's file holds what its name says, and floats as they are.
 #include <cstring>
 #include <map>

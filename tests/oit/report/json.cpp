@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The reports say what was drawn: each option has its key, and docs/json.md has all keys.
 #include <regex>
 #include <set>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a program writes is whole, or it says why not: files, stdout, and pictures of all frames.
 #include <nlohmann/json.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Long work says how far it is without a terminal, too, in lines now and then.
 #include "progress.hpp"
 

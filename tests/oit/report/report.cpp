@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the program says of a picture, on the screen and as JSON, is what it drew.
 #include <utility>
 

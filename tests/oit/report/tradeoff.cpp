@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // cellist-tradeoff finds the front, and writes what it measured so that it can be read again.
 #include <cmath>
 #include <limits>

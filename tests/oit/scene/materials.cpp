@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Base colours and opacities that a mesh file gives are drawn, and meshes share a picture.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Meshes of several formats are loaded whole, and what cannot be drawn is counted.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The computed scenes are what they are said to be.
 #include "scene/scenes.hpp"
 

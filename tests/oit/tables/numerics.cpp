@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Measures what docs/numerics.md says of numbers at their limits, and writes it into the tables
 // there: between "<!-- measured: NAME -->" and "<!-- end of measured -->".
 #include "oit/support/numerics.hpp"
