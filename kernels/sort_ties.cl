@@ -44,20 +44,21 @@ static inline cellist_sort_bits cellist_sort_without_word(cellist_sort_bits key)
 // What is known about ties at first. Other work-items change it meanwhile: it affects the time
 // alone.
 static inline cellist_sort_ties cellist_sort_known_ties(volatile global cellist_sort_state* state) {
-    const cellist_sort_ties ties = {state->ties.lists, state->ties.tied, state->ties.level};
+    const cellist_sort_ties ties = {state->ties.ranked_lists, state->ties.tied_lists,
+                                    state->ties.tie_level};
     return ties;
 }
 
 static inline int cellist_sort_expects_ties(const cellist_sort_ties* ties) {
-    return CELLIST_SORT_ITEMS == 1 && cellist_sort_key_bytes() <= 4 && ties->tied > 0 &&
-           ties->tied * 4 >= ties->lists;
+    return CELLIST_SORT_ITEMS == 1 && cellist_sort_key_bytes() <= 4 && ties->tied_lists > 0 &&
+           ties->tied_lists * 4 >= ties->ranked_lists;
 }
 
 // Takes note of a list that was ranked by its keys alone.
 static inline void cellist_sort_note_ties(cellist_sort_ties* ties, uint length, int unique) {
     if (length < CELLIST_SORT_SAMPLE_LENGTH) return;
-    ++ties->lists;
-    ties->tied += !unique;
+    ++ties->ranked_lists;
+    ties->tied_lists += !unique;
 }
 
 // Tells other work-items what this one has found.
@@ -65,10 +66,12 @@ static inline void cellist_sort_tell_ties(volatile global cellist_sort_state* st
                                           const cellist_sort_ties* known,
                                           const cellist_sort_ties* found) {
     if (CELLIST_SORT_ITEMS > 1) return;
-    if (found->level != known->level) atomic_xchg(&state->ties.level, found->level);
-    if (known->lists >= CELLIST_SORT_SAMPLES) return;
-    if (found->lists != known->lists) atomic_add(&state->ties.lists, found->lists - known->lists);
-    if (found->tied != known->tied) atomic_add(&state->ties.tied, found->tied - known->tied);
+    if (found->tie_level != known->tie_level) atomic_xchg(&state->ties.tie_level, found->tie_level);
+    if (known->ranked_lists >= CELLIST_SORT_SAMPLES) return;
+    if (found->ranked_lists != known->ranked_lists)
+        atomic_add(&state->ties.ranked_lists, found->ranked_lists - known->ranked_lists);
+    if (found->tied_lists != known->tied_lists)
+        atomic_add(&state->ties.tied_lists, found->tied_lists - known->tied_lists);
 }
 
 // Record i of a list is nodes[first + index[i]], or nodes[first + i] without an index.
@@ -223,7 +226,7 @@ static void cellist_sort_order_equal(global const cellist_sort_node* nodes, uint
     ulong words[CELLIST_SORT_CHUNK_SIZE];
     // The second time, the level is the first at which ties differ.
     for (uint attempt = 0; attempt < 2; ++attempt) {
-        const uint assumed = ties->level;
+        const uint assumed = ties->tie_level;
         uint level = assumed;
         if (cellist_sort_key_bytes() <= 4)
             cellist_sort_add_words(nodes, first, index, keys, length, level++, words);
@@ -246,7 +249,7 @@ static void cellist_sort_order_equal(global const cellist_sort_node* nodes, uint
         const uint most = one_word_decides ? assumed : CELLIST_SORT_LEVELS;
         const uint difference =
             cellist_sort_first_difference(nodes, first, index, keys, length, order, most);
-        if (difference < CELLIST_SORT_LEVELS) ties->level = difference;
+        if (difference < CELLIST_SORT_LEVELS) ties->tie_level = difference;
         if (difference >= assumed) return;
     }
 }

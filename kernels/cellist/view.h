@@ -154,9 +154,9 @@ typedef struct cellist_sort_counter {
 
 // What the first lists of a sort tell about equal keys in the others.
 typedef struct cellist_sort_ties {
-    CELLIST_UINT lists;  // that were ranked by their keys alone
-    CELLIST_UINT tied;   // those of them that have equal keys
-    CELLIST_UINT level;  // words of the records that are the same in all ties
+    CELLIST_UINT ranked_lists;  // by their keys alone
+    CELLIST_UINT tied_lists;    // those of them that have equal keys
+    CELLIST_UINT tie_level;     // words of the records that are the same in all ties
 } cellist_sort_ties;
 
 // What the kernels that sort find, from 0.
