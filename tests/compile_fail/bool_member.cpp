@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: MIT
 // error: type has no counterpart in OpenCL C
+// SPDX-License-Identifier: MIT
 #include <cellist/cellist.hpp>
 
 struct Hit {

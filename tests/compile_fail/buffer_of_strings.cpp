@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: MIT
 // error: a Buffer holds trivially copyable elements
+// SPDX-License-Identifier: MIT
 #include <string>
 
 #include <cellist/cellist.hpp>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: MIT
 // error: decomposes into 3 elements
+// SPDX-License-Identifier: MIT
 #include <cellist/struct.hpp>
 
 // With a constructor it is no aggregate; the last member lies where the device has padding.

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: MIT
 // error: decomposes into 3 elements
+// SPDX-License-Identifier: MIT
 #include <cellist/struct.hpp>
 
 struct Colour {

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: MIT
 // error: CELLIST_STRUCT: Point has more members than are named
+// SPDX-License-Identifier: MIT
 #include <cellist/cellist.hpp>
 
 // What is left out stands where padding would be.

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: MIT
 // error: CELLIST_STRUCT: Hit must be trivially copyable and of standard layout
+// SPDX-License-Identifier: MIT
 #include <cellist/cellist.hpp>
 
 struct Base {

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: MIT
 // error: CELLIST_STRUCT stands in the struct's own namespace, with its plain name
+// SPDX-License-Identifier: MIT
 #include <cellist/cellist.hpp>
 
 namespace scene {

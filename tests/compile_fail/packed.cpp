@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: MIT
 // error: CELLIST_STRUCT: the layout of Hit differs from OpenCL C's
+// SPDX-License-Identifier: MIT
 #include <cellist/cellist.hpp>
 
 struct __attribute__((packed)) Hit {

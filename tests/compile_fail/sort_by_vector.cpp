@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: MIT
 // error: records are ordered by a scalar member, or by an expression
+// SPDX-License-Identifier: MIT
 #include <cellist/cellist.hpp>
 
 struct Hit {

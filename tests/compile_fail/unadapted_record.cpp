@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: MIT
 // error: adapt the record with CELLIST_STRUCT first
+// SPDX-License-Identifier: MIT
 #include <cellist/cellist.hpp>
 
 struct Hit {

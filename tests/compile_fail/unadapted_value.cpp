@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: MIT
 // error: adapt it with CELLIST_STRUCT
+// SPDX-License-Identifier: MIT
 #include <cellist/value.hpp>
 
 struct Camera {
