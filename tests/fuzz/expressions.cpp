@@ -13,8 +13,8 @@
 
 #include <cellist/cellist.hpp>
 
-#include "input.hpp"
 #include "expression/expression.hpp"
+#include "input.hpp"
 
 namespace cellist::fuzz {
 
