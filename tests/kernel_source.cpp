@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Sources include the library's headers without a path, and their errors have the user's own lines.
+#include <filesystem>
+#include <fstream>
+#include <string>
+
 #include "device/program_text.hpp"
 #include "support/errors.hpp"
 #include "support/inserts.hpp"
@@ -165,6 +169,26 @@ TEST_CASE("options reach the compiler") {
         kernel.run(1, out);
         REQUIRE(out.download()[0] == answer);
     }
+}
+
+TEST_CASE("no macro of the library is variadic as in C99, which NVIDIA's compiler refuses") {
+    const std::filesystem::path root = CELLIST_SOURCE_DIR "/kernels";
+    int files = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root)) {
+        if (!entry.is_regular_file()) continue;
+        ++files;
+        std::ifstream file(entry.path());
+        int number = 0;
+        for (std::string line; std::getline(file, line);) {
+            ++number;
+            INFO(entry.path().string() << ":" << number << ": " << line);
+            const bool defines = line.starts_with("#define");
+            REQUIRE_FALSE((defines && contains(line, "(...)")));
+            REQUIRE_FALSE((defines && contains(line, ", ...)")));
+            REQUIRE_FALSE(contains(line, "__VA_ARGS__"));
+        }
+    }
+    REQUIRE(files > 20);
 }
 
 TEST_CASE("several kernels come from one source") {
