@@ -114,7 +114,7 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
         for (uint i = member; i < length; i += CELLIST_SORT_TEAM)
             keys[row + i] =
                 cellist_sort_key(&cellist_sort_record(own_nodes[index[row + i]]), values);
-#define CELLIST_SORT_OWN own_nodes, 0, index + row
+#define CELLIST_SORT_OWN own_nodes, CELLIST_NONE, index + row
 #else
         uint first = 0;
         if (list < own) {

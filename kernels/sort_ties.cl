@@ -74,8 +74,10 @@ static inline void cellist_sort_tell_ties(volatile global cellist_sort_state* st
         atomic_add(&state->ties.tied_lists, found->tied_lists - known->tied_lists);
 }
 
-// Record i of a list is nodes[first + index[i]], or nodes[first + i] without an index.
-#define cellist_sort_at(i) (&cellist_sort_record(nodes[first + (index ? index[i] : (i))]))
+// Record i of a list is nodes[first + i], or nodes[index[i]] where `first` is CELLIST_NONE. The index
+// itself does not tell: on NVIDIA GPUs, an array in local memory may have the address 0.
+#define cellist_sort_at(i)                                                                         \
+    (&cellist_sort_record(nodes[first == CELLIST_NONE ? index[i] : first + (i)]))
 
 // One work-item adds words to the keys of a list, where there is room.
 static inline void cellist_sort_add_first_word(global const cellist_sort_node* nodes, uint first,

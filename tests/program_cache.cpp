@@ -2,6 +2,8 @@
 // Programs are stored in files and loaded by the next process; what is wrong with a file costs a
 // build and nothing else.
 #include <fstream>
+#include <limits>
+#include <regex>
 #include <sstream>
 
 #include "device/device_state.hpp"
@@ -79,11 +81,13 @@ TEST_CASE("files that the driver does not take are built again") {
     const ProgramFiles files(device().info());
     const std::string key = std::string(build_options) + '\0' + answer_source;
     const detail::StoredProgram stored = files.load(key).value();
-    // PoCL writes a hash of itself, of LLVM and of the device after the first 8 bytes.
-    std::string foreign = stored.binary;
-    foreign[10] = static_cast<char>(foreign[10] ^ 1);
-    for (const std::string& binary :
-         {std::string(), std::string("x"), "x" + stored.binary, foreign}) {
+    std::vector<std::string> binaries{"", "x", "x" + stored.binary};
+    if (device().info().platform == "Portable Computing Language") {
+        // PoCL writes a hash of itself, of LLVM and of the device after the first 8 bytes.
+        binaries.push_back(stored.binary);
+        binaries.back()[10] = static_cast<char>(binaries.back()[10] ^ 1);
+    }
+    for (const std::string& binary : binaries) {
         INFO(binary.size() << " bytes");
         files.store(key, {"", binary});
         REQUIRE_FALSE(is_stored(answer_source));
@@ -174,6 +178,9 @@ TEST_CASE("none of the library's own programs has a warning") {
             use({.storage = nearest(&Item::key, 4)});
         });
     }
+    const std::regex driver_note(
+        R"(\(\): Warning: Function \w+ is a kernel, so overriding noinline attribute\.)"
+        R"( The function may be inlined when called\.)");
     std::size_t programs = 0;
     for (const auto& entry : fs::directory_iterator(cache.programs())) {
         std::ifstream file(entry.path(), std::ios::binary);
@@ -183,8 +190,13 @@ TEST_CASE("none of the library's own programs has a warning") {
         std::getline(file, line);
         std::size_t log = 1;
         file >> log;
-        INFO(std::string(std::istreambuf_iterator<char>(file), {}).substr(0, 2 * log + 100));
-        REQUIRE(log == 0);
+        file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+        std::string text(log, ' ');
+        file.read(text.data(), static_cast<std::streamsize>(log));
+        // NVIDIA's compiler adds an attribute of its own to large kernels, and warns of it.
+        text = std::regex_replace(text, driver_note, "");
+        INFO(text);
+        REQUIRE(text.find_first_not_of(" \n") == std::string::npos);
         ++programs;
     }
     REQUIRE(programs > 10);
