@@ -3,7 +3,6 @@
 // build and nothing else.
 #include <fstream>
 #include <limits>
-#include <regex>
 #include <sstream>
 
 #include "device/device_state.hpp"
@@ -178,9 +177,6 @@ TEST_CASE("none of the library's own programs has a warning") {
             use({.storage = nearest(&Item::key, 4)});
         });
     }
-    const std::regex driver_note(
-        R"(\(\): Warning: Function \w+ is a kernel, so overriding noinline attribute\.)"
-        R"( The function may be inlined when called\.)");
     std::size_t programs = 0;
     for (const auto& entry : fs::directory_iterator(cache.programs())) {
         std::ifstream file(entry.path(), std::ios::binary);
@@ -193,10 +189,8 @@ TEST_CASE("none of the library's own programs has a warning") {
         file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
         std::string text(log, ' ');
         file.read(text.data(), static_cast<std::streamsize>(log));
-        // NVIDIA's compiler adds an attribute of its own to large kernels, and warns of it.
-        text = std::regex_replace(text, driver_note, "");
         INFO(text);
-        REQUIRE(text.find_first_not_of(" \n") == std::string::npos);
+        REQUIRE(log == 0);
         ++programs;
     }
     REQUIRE(programs > 10);

@@ -16,14 +16,14 @@ struct Tied {
     cl_float height;
     cl_uint first;
     cl_ulong wide;
-    cl_short small[4];
+    cl_short small[6];  // without padding, which has undefined bits
     cl_float last;
 };
 CELLIST_STRUCT(Tied, height, first, wide, small, last);
 
 auto members(const Tied& r) {
     return std::tuple(ordered(r.height), r.first, r.wide, r.small[0], r.small[1], r.small[2],
-                      r.small[3], ordered(r.last));
+                      r.small[3], r.small[4], r.small[5], ordered(r.last));
 }
 
 constexpr std::array<cl_uint, 13> tie_lengths{0, 1, 2, 7, 9, 16, 33, 64, 129, 256, 257, 300, 600};

@@ -175,16 +175,28 @@ cl::NDRange work_group(const Range& range, const std::array<std::size_t, 3>& req
     return x * y < least ? cl::NullRange : nd_range({x, y, 1}, range.dimensions);
 }
 
+/// The names of a program's kernels, e.g. "first, second". CL_PROGRAM_KERNEL_NAMES does not serve:
+/// NVIDIA's driver 580 damages the heap where it answers.
+std::string kernel_names(cl::Program program) {
+    std::vector<cl::Kernel> kernels;
+    std::string names;
+    try {
+        program.createKernels(&kernels);
+        for (const cl::Kernel& kernel : kernels)
+            names += (names.empty() ? "" : ", ") + kernel.getInfo<CL_KERNEL_FUNCTION_NAME>();
+    } catch (const cl::Error&) {
+        // Some drivers fail where there are no kernels.
+    }
+    return names;
+}
+
 cl::Kernel kernel_called(const cl::Program& program, const std::string& name,
                          const Source& source) {
     try {
         return {program, name.c_str()};
     } catch (const cl::Error& error) {
         if (error.err() != CL_INVALID_KERNEL_NAME) throw;
-        std::string known = opencl([&] { return program.getInfo<CL_PROGRAM_KERNEL_NAMES>(); });
-        known.resize(std::min(known.size(), known.find('\0')));
-        for (std::size_t at = 0; (at = known.find(';', at)) != std::string::npos; at += 2)
-            known.replace(at, 1, ", ");
+        const std::string known = kernel_names(program);
         throw OpenClError(error.what(), error.err(),
                           source.file_name + " has no kernel called '" + name + "'; " +
                               (known.empty() ? "it has no kernels" : "its kernels: " + known));

@@ -5,6 +5,8 @@
 #include <atomic>
 #include <cstdint>
 #include <random>
+#include <sstream>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -16,10 +18,17 @@ namespace cellist::detail {
 
 namespace {
 
-/// The text up to the first NUL: drivers differ in whether they count it.
+/// The log, up to the first NUL: drivers differ in whether they count it.
 std::string build_log(const cl::Program& program, const cl::Device& device) {
-    std::string log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
-    log.resize(std::min(log.size(), log.find('\0')));
+    const std::string all = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
+    std::istringstream lines(all.substr(0, all.find('\0')));
+    std::string log;
+    for (std::string line; std::getline(lines, line);) {
+        // NVIDIA's compiler adds an attribute of its own to kernels, and warns of it.
+        if (!line.ends_with("is a kernel, so overriding noinline attribute. "
+                            "The function may be inlined when called."))
+            log += line + '\n';
+    }
     log.erase(0, log.find_first_not_of(" \n"));
     log.erase(log.find_last_not_of(" \n") + 1);
     return log;
