@@ -47,6 +47,8 @@
 #define CELLIST_THRESHOLD_PASS 16u
 #define CELLIST_SELECTION_PASS 32u
 #define CELLIST_PARTITIONED 64u
+// Not a mode of nodes: a container of the program is distributed over ranks. See distributed.clh.
+#define CELLIST_DISTRIBUTED_MODE 128u
 
 // Every storage: ROW(name, its modes, a, b), where a and b are passed on. <name>.clh describes the
 // heads and nodes of the modes; storage_<name>.cpp is the host's part.
@@ -86,6 +88,26 @@ typedef struct cellist_view {
     CELLIST_UINT partition_bits;   // cells of a partition in mode PARTITIONED: 2^partition_bits
     CELLIST_UINT periodic_axes;    // bit i: axis i wraps around
 } cellist_view;
+
+// What kernels may insert into a distributed container: records of the rank's own block, which go
+// into its lists, and those of other ranks, which go into its outbox.
+#define CELLIST_INSERT_OWN 1u
+#define CELLIST_INSERT_FOREIGN 2u
+
+// How the cells of a distributed container are divided, as one rank sees it. Passed by value.
+typedef struct cellist_distribution {
+    cellist_view domain;       // the extents, the cells and the periodic axes of the whole shape
+    cellist_view outbox;       // the outbox as a pool of nodes
+    CELLIST_UINT origin[4];    // of the rank's block in the domain
+    CELLIST_UINT block[4];     // extents of the block; 0 if it is empty
+    CELLIST_UINT ghosts[4];    // layers of ghost cells on either side of the block
+    CELLIST_UINT held[4];      // extents of the rank's lists: block and ghosts
+    CELLIST_UINT inverse[3];   // of the extents of the domain, in units of 2^-32
+    CELLIST_UINT inserts;      // CELLIST_INSERT_...; 0 outside of a build
+    CELLIST_UINT range_first;  // the cells of a block that is a range of them ...
+    CELLIST_UINT range_cells;  // ... CELLIST_NONE for other blocks
+    CELLIST_UINT range_held;   // the first of them among the rank's lists
+} cellist_distribution;
 
 // The counters of one shard, alone in its cache line. The struct after the last shard holds the
 // pool's state.

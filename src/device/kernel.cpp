@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <span>
 
 #include <cellist/detail/build.hpp>
@@ -12,6 +13,7 @@
 
 #include "cellist_kernels.hpp"
 #include "device/device_state.hpp"
+#include "device/distribution.hpp"
 #include "device/other_queues.hpp"
 #include "device/parameter.hpp"
 #include "device/program_text.hpp"
@@ -36,24 +38,29 @@ void add_switch(ProgramText& whole, const std::string& name, bool on) {
         "CELLIST_" + name);
 }
 
-/// The library's part of every program. Put together once: each new Kernel needs the whole text.
-const ProgramText& library_text() {
-    static const ProgramText library = [] {
-        ProgramText text;
-        text.add(kernels::view_h, "cellist/view.h");
-        text.add(kernels::warp_clh, "cellist/warp.clh");
-        text.add(kernels::threads_clh, "cellist/threads.clh");
-        text.add(kernels::allocation_clh, "cellist/allocation.clh");
+ProgramText make_library_text(bool distributed) {
+    ProgramText text;
+    text.add(kernels::view_h, "cellist/view.h");
+    text.add(kernels::warp_clh, "cellist/warp.clh");
+    text.add(kernels::threads_clh, "cellist/threads.clh");
+    text.add(kernels::allocation_clh, "cellist/allocation.clh");
+    if (distributed) text.add(kernels::distributed_clh, "cellist/distributed.clh");
 #define CELLIST_ADD_STORAGE(name, modes, unused, unused_too)                                       \
     text.add(kernels::name##_clh, "cellist/" #name ".clh");
-        CELLIST_STORAGES(CELLIST_ADD_STORAGE, , )
+    CELLIST_STORAGES(CELLIST_ADD_STORAGE, , )
 #undef CELLIST_ADD_STORAGE
-        text.add(kernels::lists_clh, "cellist/lists.clh");
-        text.add(kernels::around_clh, "cellist/around.clh");
-        text.add(kernels::hash_clh, "cellist/hash.clh");
-        return text;
-    }();
-    return library;
+    text.add(kernels::lists_clh, "cellist/lists.clh");
+    text.add(kernels::around_clh, "cellist/around.clh");
+    text.add(kernels::hash_clh, "cellist/hash.clh");
+    return text;
+}
+
+/// The library's part of every program. Put together once: each new Kernel needs the whole text.
+const ProgramText& library_text(bool distributed) {
+    static const ProgramText library = make_library_text(false);
+    if (!distributed) return library;
+    static const ProgramText distributed_library = make_library_text(true);
+    return distributed_library;
 }
 
 ProgramText whole_source(const Source& source, const detail::Definitions& definitions,
@@ -72,10 +79,11 @@ ProgramText whole_source(const Source& source, const detail::Definitions& defini
         show.insert(0, "#pragma pop_macro(\"" + macro + "\")\n");
     }
     whole.add(hide, "options");
-    whole.add("#define CELLIST_MODES " + std::to_string(modes) + "u", "modes");
+    const cl_uint distributed = modes & CELLIST_DISTRIBUTED_MODE;
+    whole.add("#define CELLIST_MODES " + std::to_string(modes - distributed) + "u", "modes");
     add_switch(whole, "WARP_AGGREGATION", device.warp_aggregation);
     add_switch(whole, "ONE_THREAD_PER_WORK_GROUP", device.one_thread_per_work_group);
-    whole.add(library_text());
+    whole.add(library_text(distributed != 0));
     whole.add(all.source(), structs);
     whole.add(show, "options");
     whole.add(text, source.file_name);
@@ -203,11 +211,39 @@ cl::Kernel kernel_called(const cl::Program& program, const std::string& name,
     }
 }
 
-/// Parameters or arguments as they are written: a container is one of them and takes four.
-std::size_t written(const auto& list) {
-    const auto containers =
-        std::count_if(list.begin(), list.end(), [](const auto& item) { return item.is_container; });
-    return list.size() - 3 * static_cast<std::size_t>(containers);
+/// What CELLIST_LISTS declares: nodes, heads, shards and view.
+constexpr std::size_t container_parameters = 4;
+/// What it declares in programs for a distributed container, too: an outbox, its shards, and the
+/// distribution.
+constexpr std::size_t distribution_parameters = 3;
+
+/// Parameters or arguments as they are written: a container is one of them.
+std::size_t written(const auto& list, cl_uint modes) {
+    const auto containers = static_cast<std::size_t>(std::count_if(
+        list.begin(), list.end(), [](const auto& item) { return item.is_container; }));
+    const bool distributed = (modes & CELLIST_DISTRIBUTED_MODE) != 0;
+    return list.size() -
+           containers * (container_parameters - 1 + (distributed ? distribution_parameters : 0));
+}
+
+/// The arguments for a program with a distributed container. Other containers get no outbox, and a
+/// distribution that maps each cell to itself.
+Arguments with_distributions(const Arguments& given) {
+    Arguments all;
+    const auto list = given.list();
+    for (std::size_t i = 0; i < list.size();) {
+        const std::size_t count = list[i].is_container ? container_parameters : 1;
+        all.append(given, i, count);
+        i += count;
+        if (count == 1 || (i + 2 < list.size() && list[i + 2].type == detail::distribution_type))
+            continue;
+        cellist_view view;
+        std::memcpy(&view, given.data(list[i - 1]), sizeof view);
+        all.append(given, i - 2, 1);
+        all.append(given, i - 2, 1);
+        detail::add_distribution(all, detail::whole_distribution(view));
+    }
+    return all;
 }
 
 /// The kernel, compiled for containers of some modes.
@@ -281,8 +317,10 @@ struct Kernel::Impl {
     void set(Variant& variant, const Arguments& arguments) const {
         const auto list = arguments.list();
         if (list.size() != variant.parameters.size())
-            throw Error("kernel " + name + " takes " + std::to_string(written(variant.parameters)) +
-                        " arguments and was given " + std::to_string(written(list)) +
+            throw Error("kernel " + name + " takes " +
+                        std::to_string(written(variant.parameters, arguments.modes())) +
+                        " arguments and was given " +
+                        std::to_string(written(list, arguments.modes())) +
                         " (a container counts as one; build(kernel, ...) passes it first)");
         const detail::ArgumentCheck check(*device, definitions, name);
         for (cl_uint i = 0; i < list.size(); ++i)
@@ -354,7 +392,10 @@ std::string Kernel::log() const {
     return whole_source(own.source, own.definitions, modes, own.device->info).in_parts(log);
 }
 
-void Kernel::enqueue(const Range& range, const Arguments& arguments, cl::Event* event) {
+void Kernel::enqueue(const Range& range, const Arguments& given, cl::Event* event) {
+    std::optional<Arguments> all;
+    if ((given.modes() & CELLIST_DISTRIBUTED_MODE) != 0) all = with_distributions(given);
+    const Arguments& arguments = all ? *all : given;
     Variant& variant =
         impl_->variant(arguments.modes() != 0 ? arguments.modes() : impl_->definitions.modes);
     impl_->set(variant, arguments);

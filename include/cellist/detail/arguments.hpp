@@ -29,6 +29,15 @@ namespace detail {
 /// The part of a Lists object that does not depend on the record type.
 class ListsCore;
 
+class Arguments;
+
+/// Another container than Lists: one of <cellist/mpi.hpp>.
+template <class C>
+concept Container = requires(const C& container, Arguments& arguments) {
+    container.add_to(arguments);
+    { container.definitions() } -> std::same_as<Definitions>;
+};
+
 /// The arguments of one launch, in order.
 class CELLIST_API Arguments {
 public:
@@ -72,6 +81,10 @@ public:
     void add(const Lists<T>& lists) {
         add_lists(lists.core());
     }
+    template <Container C>
+    void add(const C& container) {
+        container.add_to(*this);
+    }
     template <std::derived_from<cl::Memory> M>
     void add(const M& memory) {
         const cl_mem handle = memory();
@@ -96,14 +109,19 @@ public:
     }
 
     /// Appends the arguments of another launch.
-    void append(const Arguments& others) {
+    void append(const Arguments& others) { append(others, 0, others.arguments_.size()); }
+    /// Appends `count` of them, from `first` on.
+    void append(const Arguments& others, std::size_t first, std::size_t count) {
         for (const ClosedLists& closed : others.closed_)
-            closed_.push_back({closed.lists, closed.index + arguments_.size()});
-        for (Argument argument : others.arguments_) {
-            argument.offset += bytes_.size();
-            arguments_.push_back(std::move(argument));
+            if (closed.index - first < count)
+                closed_.push_back({closed.lists, closed.index - first + arguments_.size()});
+        for (const Argument& argument : others.list().subspan(first, count)) {
+            arguments_.push_back(argument);
+            arguments_.back().offset = bytes_.size();
+            if (argument.kind == Kind::local) continue;
+            const auto begin = others.bytes_.begin() + static_cast<std::ptrdiff_t>(argument.offset);
+            bytes_.insert(bytes_.end(), begin, begin + static_cast<std::ptrdiff_t>(argument.size));
         }
-        bytes_.insert(bytes_.end(), others.bytes_.begin(), others.bytes_.end());
         modes_ |= others.modes_;
     }
 
@@ -113,6 +131,8 @@ public:
         arguments_.back().type = record;
         arguments_.back().is_container = true;
     }
+    /// Sets the type of the last argument.
+    void set_type(const std::string& type) { arguments_.back().type = type; }
     /// Tells that a container among the arguments has this mode.
     void add_mode(cl_uint mode) { modes_ |= mode; }
     /// The modes of all containers among the arguments.
@@ -145,6 +165,10 @@ Definitions definitions_used(const Lists<T>& lists) {
 template <class T>
 Definitions definitions_used(const Type<T>&) {
     return definitions_of<T>();
+}
+template <Container C>
+Definitions definitions_used(const C& container) {
+    return container.definitions();
 }
 
 }  // namespace detail

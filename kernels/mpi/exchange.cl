@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// Moves records between the ranks of distributed lists: see distributed.clh.
+//
+// CELLIST_RECORD is the record. CELLIST_SENT is a struct of a record and its cell, in the layout of
+// cellist_node_T. The lists `send` have one cell for each rank.
+#include <cellist/lists.clh>
+
+// Puts the records of the outbox in the order of the ranks that own their cells. `cuts` is the tree
+// of cuts: an axis, a position, and the parts before and from the position on. A negative part
+// is the block of rank -1 - part.
+//
+// One work-item a node of the outbox.
+kernel void cellist_route(CELLIST_LISTS(CELLIST_SENT, send),
+                          global const struct CELLIST_SENT* outbox,
+                          volatile global cellist_shard* shards, const cellist_view pool,
+                          const cellist_view domain, global const int4* cuts) {
+    const ulong i = get_global_id(0);
+    if (i >= pool.pool_nodes || !cellist_is_allocated(shards, pool, (uint)i)) return;
+    const struct CELLIST_SENT sent = outbox[i];
+    const int4 position = cellist_place_in(domain, sent.cell);
+    int part = 0;
+    while (part >= 0) {
+        const int4 cut = cuts[part];
+        const int at = cut.x == 0
+                           ? position.x
+                           : (cut.x == 1 ? position.y : (cut.x == 2 ? position.z : position.w));
+        part = at < cut.y ? cut.z : cut.w;
+    }
+    cellist_insert(send, -1 - part, sent);
+}
+
+// Inserts records that other ranks have sent. Their cells are those of the lists.
+//
+// One work-item a record.
+kernel void cellist_receive(CELLIST_LISTS(CELLIST_RECORD, lists),
+                            global const struct CELLIST_SENT* received, const uint count) {
+    const ulong i = get_global_id(0);
+    if (i >= count) return;
+    cellist_insert(lists, received[i].cell, received[i].record);
+}
+
+static inline uint cellist_cell_of_box(uint4 at, uint4 extent) {
+    return ((at.w * extent.z + at.z) * extent.y + at.y) * extent.x + at.x;
+}
+
+// Copies the records of a box of cells, which `rank` has as ghost cells. The box begins at `first`
+// of the lists, and at `target` of that rank's lists, whose extents are `target_extent`.
+//
+// One work-item a cell of the box.
+kernel void cellist_copy_box(CELLIST_LISTS(CELLIST_SENT, send),
+                             CELLIST_LISTS(CELLIST_RECORD, lists), const uint4 first,
+                             const uint4 box, const uint4 target, const uint4 target_extent,
+                             const uint rank) {
+    const ulong i = get_global_id(0);
+    if (i >= (ulong)box.x * box.y * box.z * box.w) return;
+    const uint row = (uint)i / box.x;
+    const uint plane = row / box.y;
+    const uint4 at =
+        (uint4)((uint)i - row * box.x, row - plane * box.y, plane % box.z, plane / box.z);
+    const int4 extent = cellist_extent(lists);
+    const uint cell = cellist_cell_of_box(
+        first + at, (uint4)((uint)extent.x, (uint)extent.y, (uint)extent.z, (uint)extent.w));
+    cellist_for_each(lists, cell, node) {
+        struct CELLIST_SENT sent;
+        sent.record = cellist_get(lists, node);
+        sent.cell = cellist_cell_of_box(target + at, target_extent);
+        cellist_insert(send, rank, sent);
+    }
+}
+
+// Inserts the records of the rank's own block from a copy of all lists: the ghost cells are left
+// out.
+//
+// One work-item a cell of the block.
+kernel void cellist_keep_own(CELLIST_LISTS(CELLIST_RECORD, lists),
+                             global const struct CELLIST_RECORD* records,
+                             global const uint* offsets, const uint4 first, const uint4 box) {
+    const ulong i = get_global_id(0);
+    if (i >= (ulong)box.x * box.y * box.z * box.w) return;
+    const uint row = (uint)i / box.x;
+    const uint plane = row / box.y;
+    const uint4 at =
+        (uint4)((uint)i - row * box.x, row - plane * box.y, plane % box.z, plane / box.z);
+    const int4 extent = cellist_extent(lists);
+    const uint cell = cellist_cell_of_box(
+        first + at, (uint4)((uint)extent.x, (uint)extent.y, (uint)extent.z, (uint)extent.w));
+    for (uint node = offsets[cell]; node < offsets[cell + 1]; ++node)
+        cellist_insert(lists, cell, records[node]);
+}

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <cellist/mpi.hpp>
+
+namespace cellist::detail {
+
+/// A duplicate of the program's communicator. All functions but get(), rank() and size() are
+/// collective.
+class Communicator {
+public:
+    /// Throws Error if MPI is not ready for the library.
+    explicit Communicator(MPI_Comm comm);
+    ~Communicator();
+    Communicator(const Communicator&) = delete;
+    Communicator& operator=(const Communicator&) = delete;
+
+    [[nodiscard]] MPI_Comm get() const { return comm_; }
+    [[nodiscard]] int rank() const { return rank_; }
+    [[nodiscard]] int size() const { return size_; }
+
+    /// Throws the same on all ranks if a rank passes an exception: that of the lowest such rank.
+    void agree(const std::exception_ptr& error) const;
+    /// Calls a function on all ranks, then agrees on what it throws.
+    void together(const std::function<void()>& call) const;
+    /// Throws Error on all ranks unless all of them pass the same text. `what` says what it names.
+    void require_same(const std::string& text, const std::string& what) const;
+
+    /// What each rank sends to each: element r of the result is what rank r passes for this one.
+    [[nodiscard]] std::vector<std::uint64_t> transpose(
+        const std::vector<std::uint64_t>& numbers) const;
+    /// Replaces the numbers by their sums, minima or maxima over all ranks.
+    void reduce(std::uint64_t* numbers, std::uint64_t count, MPI_Op operation) const;
+    /// Copies bytes of one rank to all.
+    void broadcast(void* data, std::uint64_t bytes, int root) const;
+
+private:
+    MPI_Comm comm_ = MPI_COMM_NULL;
+    int rank_ = 0;
+    int size_ = 1;
+};
+
+}  // namespace cellist::detail

@@ -1,0 +1,527 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include <cellist/detail/distributed_core.hpp>
+
+#include "cellist_mpi_kernels.hpp"
+#include "device/distribution.hpp"
+#include "mpi/exchange.hpp"
+#include "mpi/partition_plan.hpp"
+#include "storage/container_storage.hpp"
+
+namespace cellist::detail {
+
+namespace {
+
+/// Nodes of an outbox at first. It grows to what a build needs.
+constexpr std::uint64_t outbox_nodes = 65536;
+
+/// The struct of a record and its cell, as cellist_node_T has them.
+RecordType sent_type(const RecordType& record) {
+    const NodeLayout layout = node_layout(record);
+    const std::size_t cell =
+        (record.size + sizeof(cl_uint) - 1) / sizeof(cl_uint) * sizeof(cl_uint);
+    return {"cellist_sent_" + record.name,
+            layout.size,
+            std::max(record.alignment, sizeof(cl_uint)),
+            {{"record", "struct " + record.name, {}, 0, {}, false},
+             {"cell", "uint", {}, cell, {}, false}}};
+}
+
+Definitions with_sent(Definitions definitions) {
+    const RecordType sent = sent_type(definitions.records.back());
+    definitions.add(sent);
+    return definitions;
+}
+
+std::string lists_text(const RecordType& record, const ListsOptions& options) {
+    std::string text = "lists of struct " + record.name + " {";
+    for (const RecordMember& member : record.members)
+        text += " " + member.type + " " + member.name + member.extents + ";";
+    text += " } of " + std::to_string(record.size) + " bytes in ";
+    if (const NearestKey* key = options.storage.nearest_key())
+        text += "the storage of nearest(" + std::string(key->member) + ", " +
+                std::to_string(key->slots) + ")";
+    else
+        text += std::string("Storage::") + name_of(options.storage);
+    constexpr std::array policies{"grow", "stop", "drop"};
+    return text + " with Overflow::" + policies[static_cast<std::size_t>(options.overflow)];
+}
+
+cl_uint4 vector_of(const Position& position) {
+    cl_uint4 vector{};
+    for (std::size_t axis = 0; axis < 4; ++axis)
+        vector.s[axis] = static_cast<cl_uint>(position[axis]);
+    return vector;
+}
+
+std::uint64_t cells_of(const Position& extent) {
+    return extent[0] * extent[1] * extent[2] * extent[3];
+}
+
+}  // namespace
+
+void on_all_ranks(const PartitionPlan& plan, const std::function<void()>& call) {
+    plan.communicator().together(call);
+}
+
+ListsOptions local_options(const PartitionPlan& plan, const ListsOptions& options) {
+    if (options.periodic != ListsOptions{}.periodic && options.periodic != plan.options().periodic)
+        throw Error(
+            "the partition says which axes of distributed lists are periodic: name them in "
+            "PartitionOptions::periodic");
+    ListsOptions local = options;
+    // Ghost cells stand for what lies beyond a divided axis.
+    for (std::size_t axis = 0; axis < 4; ++axis)
+        local.periodic[axis] =
+            plan.options().periodic[axis] && plan.own().extent[axis] == plan.shape().extent(axis);
+    return local;
+}
+
+struct DistributedCore::Impl {
+    Impl(std::shared_ptr<DeviceState> state, Definitions its_definitions,
+         std::shared_ptr<const PartitionPlan> its_plan, const ListsOptions& options,
+         ListsCore& its_lists)
+        : plan(std::move(its_plan)),
+          communicator(plan->communicator()),
+          lists(its_lists),
+          device(std::move(state)),
+          definitions(std::move(its_definitions)),
+          is_automatic(Storage(options.storage) == Storage::automatic),
+          outbox(device, Shape{1}, ListsOptions{.budget_bytes = options.budget_bytes},
+                 {.node_bytes = node_layout(definitions.records.back()).size,
+                  .head_words_a_cell = 1,
+                  .is_linked = true}),
+          distribution(plan->distribution()),
+          exchange(communicator, device) {
+        outbox.allocate(communicator.size() > 1 ? outbox_nodes : 0);
+        send =
+            std::make_shared<ListsCore>(device, with_sent(definitions), Shape{communicator.size()},
+                                        ListsOptions{.storage = Storage::counted});
+        const auto& tree = plan->cuts();
+        cuts = Memory(device, tree.size(), sizeof tree[0], "cuts");
+        cuts.write(tree.data(), tree.size() * sizeof tree[0]);
+        outbox.clear(outbox.heads(), CELLIST_NONE, 0, 1);
+    }
+
+    Kernel& kernel(std::optional<Kernel>& place, const char* name) {
+        if (!place) {
+            const RecordType& record = definitions.records.back();
+            Definitions all = with_sent(definitions);
+            all.modes = lists.mode() | send->mode();
+            place.emplace(device,
+                          Source{.text = "#define CELLIST_RECORD " + record.name +
+                                         "\n#define CELLIST_SENT cellist_sent_" + record.name +
+                                         "\n#line 1 \"exchange.cl\"\n" +
+                                         std::string(cellist_mpi::kernels::exchange_cl)},
+                          name, all);
+        }
+        return *place;
+    }
+
+    [[nodiscard]] cellist_view outbox_view() const {
+        cellist_view view{};
+        view.pool_nodes = static_cast<cl_uint>(outbox.nodes_count());
+        view.shard_bits = outbox.shard_bits();
+        view.thread_slots = outbox.thread_slots();
+        return view;
+    }
+
+    void add_to(Arguments& arguments) const {
+        lists.add_to(arguments);
+        arguments.add_mode(CELLIST_DISTRIBUTED_MODE);
+        arguments.add(outbox.nodes());
+        arguments.add(outbox.counters());
+        cellist_distribution now = distribution;
+        now.outbox = outbox_view();
+        now.inserts = inserts;
+        add_distribution(arguments, now);
+    }
+
+    /// Runs the user's kernels. What they insert goes where `mode` says.
+    void run(const std::function<void()>& insert, cl_uint mode) {
+        inserts = mode;
+        try {
+            insert();
+        } catch (...) {
+            inserts = 0;
+            throw;
+        }
+        inserts = 0;
+    }
+
+    /// Runs the user's kernels, and again until the outbox holds all foreign records. Then brings
+    /// these in the order of the ranks.
+    void fill_outbox(const std::function<void()>& insert, cl_uint mode) {
+        outbox.start_build();
+        for (;;) {
+            outbox.clear(outbox.heads(), CELLIST_NONE, 0, 1);
+            run(insert, mode);
+            Counters counters;
+            ReadbackFence fence;
+            fence.add(outbox.read(counters));
+            fence.wait();
+            const Counters::Sum sum = counters.sum();
+            if (sum.dropped == 0) break;
+            const BuildReport report{.attempted = sum.allocated + sum.dropped};
+            outbox.require(report.attempted, report);
+            outbox.grow(report.attempted, report);
+            // The rank's own records are in its lists.
+            mode = CELLIST_INSERT_FOREIGN;
+        }
+        send->build([&] {
+            Arguments arguments;
+            send->add_to(arguments);
+            arguments.add(outbox.nodes());
+            arguments.add(outbox.counters());
+            const cellist_view pool = outbox_view();
+            arguments.append(Arguments::Kind::value, &pool, sizeof pool);
+            arguments.append(Arguments::Kind::value, &distribution.domain,
+                             sizeof distribution.domain);
+            arguments.add(cuts);
+            kernel(route, "cellist_route").enqueue(Range::padded(pool.pool_nodes), arguments);
+        });
+    }
+
+    /// Sends what is in the send lists. Collective.
+    void send_all() {
+        const ListStorage& storage = send->storage().in_use();
+        std::vector<cl_uint> offsets(static_cast<std::size_t>(communicator.size()) + 1, 0);
+        agree([&] {
+            storage.pool().heads().read(offsets.data(), offsets.size() * sizeof offsets[0]);
+        });
+        try {
+            received = exchange.run(storage.pool().nodes(), offsets, storage.pool().node_bytes());
+        } catch (...) {
+            agreed = std::current_exception();
+            throw;
+        }
+    }
+
+    /// Inserts what has arrived. The container of the arguments takes cells of the records.
+    void insert_received(Arguments arguments) {
+        if (received == 0) return;
+        arguments.add(exchange.received());
+        arguments.add(static_cast<cl_uint>(received));
+        kernel(receive, "cellist_receive").enqueue(Range::padded(received), arguments);
+    }
+
+    /// Calls a function on all ranks within a build, and remembers that all know of its failure.
+    void agree(const std::function<void()>& call) {
+        try {
+            communicator.together(call);
+        } catch (...) {
+            agreed = std::current_exception();
+            throw;
+        }
+    }
+
+    /// Calls a function that changes the lists of this rank, and may call agree(). After a failure
+    /// on any rank, all lists are empty.
+    void change(const std::function<void()>& call) {
+        agreed = nullptr;
+        std::exception_ptr error;
+        try {
+            call();
+        } catch (...) {
+            error = std::current_exception();
+        }
+        try {
+            // An agreed failure has thrown on all ranks; any other is new to them. Their next
+            // collective call is to agree, in this place or in an earlier one.
+            if (agreed) std::rethrow_exception(std::exchange(agreed, nullptr));
+            communicator.agree(error);
+        } catch (...) {
+            inserts = 0;
+            has_ghosts = false;
+            try {
+                lists.clear();
+            } catch (...) {
+                // The error that is under way says why.
+            }
+            throw;
+        }
+    }
+
+    [[nodiscard]] Range box_range(const Position& extent) const {
+        return Range::padded(cells_of(extent));
+    }
+
+    void copy_ghosts() {
+        send->build([&] {
+            for (const GhostCopy& copy : plan->ghost_copies()) {
+                Arguments arguments;
+                send->add_to(arguments);
+                lists.add_to(arguments);
+                arguments.add(vector_of(copy.first));
+                arguments.add(vector_of(copy.extent));
+                arguments.add(vector_of(copy.target));
+                arguments.add(vector_of(plan->held(copy.rank)));
+                arguments.add(static_cast<cl_uint>(copy.rank));
+                kernel(copy_box, "cellist_copy_box").enqueue(box_range(copy.extent), arguments);
+            }
+        });
+    }
+
+    /// Builds the lists anew from a copy of the rank's own records and those that have arrived.
+    void build_with_received() {
+        Memory offsets(device, lists.shape().cells() + 1, sizeof(cl_uint), "offsets of a copy");
+        Memory records;
+        const RecordType& record = definitions.records.back();
+        lists.pack(
+            offsets.cl(),
+            [&](std::uint64_t count) -> const cl::Buffer& {
+                records = Memory(device, count, record.size, "copy of all records");
+                return records.cl();
+            },
+            "", "");
+        lists.build([&] {
+            Arguments arguments;
+            lists.add_to(arguments);
+            Arguments own = arguments;
+            own.add(records.cl());
+            own.add(offsets.cl());
+            own.add(vector_of(plan->ghosts()));
+            own.add(vector_of(plan->own().extent));
+            kernel(keep_own, "cellist_keep_own").enqueue(box_range(plan->own().extent), own);
+            insert_received(std::move(arguments));
+        });
+    }
+
+    /// Calls a function for each cell of a rank's block: its index in the whole shape and in the
+    /// rank's lists.
+    void for_each_own_cell(int rank,
+                           const std::function<void(std::uint64_t, std::uint64_t)>& call) const {
+        const mpi::Block& block = plan->block(rank);
+        const Position held = plan->held(rank), &ghosts = plan->ghosts();
+        Position at{};
+        for (at[3] = 0; at[3] < block.extent[3]; ++at[3])
+            for (at[2] = 0; at[2] < block.extent[2]; ++at[2])
+                for (at[1] = 0; at[1] < block.extent[1]; ++at[1])
+                    for (at[0] = 0; at[0] < block.extent[0]; ++at[0]) {
+                        std::uint64_t local = 0;
+                        Position global{};
+                        for (std::size_t axis = 4; axis-- > 0;) {
+                            local = local * held[axis] + at[axis] + ghosts[axis];
+                            global[axis] = block.origin[axis] + at[axis];
+                        }
+                        call(plan->cell(global), local);
+                    }
+    }
+
+    std::shared_ptr<const PartitionPlan> plan;
+    const Communicator& communicator;
+    ListsCore& lists;
+    MemoryOwner device;
+    Definitions definitions;
+    bool is_automatic;
+    NodePool outbox;
+    cellist_distribution distribution;
+    Exchange exchange;
+    std::shared_ptr<ListsCore> send;  ///< one cell a rank
+    Memory cuts;
+    cl_uint inserts = 0;         ///< what kernels may insert now
+    std::uint64_t received = 0;  ///< by the last exchange
+    bool has_ghosts = false;
+    std::exception_ptr agreed;  ///< a failure that all ranks have thrown
+    std::optional<Kernel> route, receive, copy_box, keep_own;
+};
+
+DistributedCore::DistributedCore(std::shared_ptr<DeviceState> device, Definitions definitions,
+                                 std::shared_ptr<const PartitionPlan> plan,
+                                 const ListsOptions& options, ListsCore& local) {
+    plan->communicator().require_same(lists_text(definitions.records.back(), options), "lists");
+    on_all_ranks(*plan, [&] {
+        impl_ =
+            std::make_unique<Impl>(std::move(device), std::move(definitions), plan, options, local);
+    });
+}
+
+DistributedCore::~DistributedCore() = default;
+
+BuildReport DistributedCore::build(const std::function<void()>& insert) {
+    Impl& own = *impl_;
+    BuildReport report;
+    own.change([&] {
+        own.received = 0;
+        own.has_ghosts = false;
+        bool has_sent = own.communicator.size() == 1;
+        const auto exchange = [&](cl_uint mode) {
+            own.agree([&] { own.fill_outbox(insert, mode); });
+            own.send_all();
+            has_sent = true;
+        };
+        // Builds that measure a storage do not contain the exchange.
+        if (own.is_automatic && !has_sent) exchange(CELLIST_INSERT_FOREIGN);
+        report = own.lists.build([&] {
+            if (has_sent)
+                own.run(insert, CELLIST_INSERT_OWN);
+            else
+                exchange(CELLIST_INSERT_OWN | CELLIST_INSERT_FOREIGN);
+            Arguments arguments;
+            own.inserts = CELLIST_INSERT_OWN;
+            own.add_to(arguments);
+            own.inserts = 0;
+            own.insert_received(std::move(arguments));
+        });
+    });
+    std::array<std::uint64_t, 6> sums{report.attempted, report.stored,         report.dropped,
+                                      report.rejected,  report.capacity_nodes, report.existing};
+    own.communicator.reduce(sums.data(), sums.size(), MPI_SUM);
+    std::uint64_t passes = report.passes;
+    own.communicator.reduce(&passes, 1, MPI_MAX);
+    return {.attempted = sums[0],
+            .stored = sums[1],
+            .dropped = sums[2],
+            .rejected = sums[3],
+            .capacity_nodes = sums[4],
+            .passes = static_cast<std::uint32_t>(passes),
+            .existing = sums[5]};
+}
+
+void DistributedCore::exchange_ghosts() {
+    Impl& own = *impl_;
+    if (own.plan->options().ghosts == 0)
+        throw Error(
+            "a partition without ghost cells has none to exchange: set "
+            "PartitionOptions::ghosts");
+    own.change([&] {
+        own.agree([&] { own.copy_ghosts(); });
+        own.send_all();
+        if (own.has_ghosts) {
+            own.build_with_received();
+        } else {
+            own.lists.append([&] {
+                Arguments arguments;
+                own.lists.add_to(arguments);
+                own.insert_received(std::move(arguments));
+            });
+        }
+        own.has_ghosts = true;
+    });
+}
+
+void DistributedCore::clear() {
+    impl_->has_ghosts = false;
+    on_all_ranks(*impl_->plan, [&] { impl_->lists.clear(); });
+}
+
+void DistributedCore::add_to(Arguments& arguments) const { impl_->add_to(arguments); }
+
+Definitions DistributedCore::definitions() const {
+    Definitions all = impl_->definitions;
+    all.modes = impl_->lists.mode() | CELLIST_DISTRIBUTED_MODE;
+    return all;
+}
+
+void DistributedCore::set_message_bytes(std::uint64_t bytes) {
+    impl_->exchange.set_message_bytes(bytes);
+}
+
+Lengths DistributedCore::lengths() const {
+    const Impl& own = *impl_;
+    std::vector<cl_uint> of_own;
+    on_all_ranks(*own.plan, [&] {
+        std::vector<cl_uint> all;
+        ReadbackFence fence;
+        fence.add(own.lists.read_lengths(all));
+        fence.wait();
+        of_own.reserve(own.plan->own().cells());
+        own.for_each_own_cell(own.communicator.rank(), [&](std::uint64_t, std::uint64_t local) {
+            of_own.push_back(all[local]);
+        });
+    });
+    const Lengths mine(of_own);
+    Lengths sum;
+    for (int rank = 0; rank < own.communicator.size(); ++rank) {
+        std::uint64_t entries = mine.histogram.size();
+        own.communicator.broadcast(&entries, sizeof entries, rank);
+        std::vector<std::array<std::uint64_t, 2>> pairs;
+        for (const auto& [length, cells] : mine.histogram) pairs.push_back({length, cells});
+        pairs.resize(entries);
+        own.communicator.broadcast(pairs.data(), entries * sizeof pairs[0], rank);
+        for (const auto& [length, cells] : pairs) {
+            sum.histogram[length] += cells;
+            sum.longest = std::max(sum.longest, length);
+            sum.nonempty_cells += length > 0 ? cells : 0;
+            sum.total += length * cells;
+        }
+    }
+    return sum;
+}
+
+Validation DistributedCore::validate() const {
+    const Impl& own = *impl_;
+    Validation found;
+    on_all_ranks(*own.plan, [&] { found = own.lists.validate()(); });
+    std::array<std::uint64_t, 4> sums{found.broken_links, found.repeated_nodes, found.lost_nodes,
+                                      found.late_inserts};
+    own.communicator.reduce(sums.data(), sums.size(), MPI_SUM);
+    std::uint64_t lowest = CELLIST_NONE;
+    if (found.first_bad_cell)
+        own.for_each_own_cell(own.communicator.rank(),
+                              [&](std::uint64_t cell, std::uint64_t local) {
+                                  if (local == *found.first_bad_cell) lowest = cell;
+                              });
+    own.communicator.reduce(&lowest, 1, MPI_MIN);
+    Validation all;
+    all.broken_links = sums[0];
+    all.repeated_nodes = sums[1];
+    all.lost_nodes = sums[2];
+    all.late_inserts = sums[3];
+    if (lowest != CELLIST_NONE) all.first_bad_cell = lowest;
+    return all;
+}
+
+void DistributedCore::download(std::vector<std::uint64_t>& offsets,
+                               const std::function<void*(std::uint64_t)>& allocate) const {
+    const Impl& own = *impl_;
+    const std::size_t bytes = own.definitions.records.back().size;
+    const std::uint64_t cells = own.plan->shape().cells();
+    std::vector<std::byte> mine;
+    std::byte* all = nullptr;
+    std::vector<std::byte> of_rank;
+    on_all_ranks(*own.plan, [&] {
+        std::vector<cl_uint> starts;
+        std::vector<std::byte> records;
+        {
+            ReadbackFence fence;
+            own.lists.download(fence, starts, [&](std::uint64_t count) -> void* {
+                records = host_memory<std::byte>(count * bytes);
+                return records.data();
+            });
+            fence.wait();
+        }
+        offsets = host_memory<std::uint64_t>(cells + 1);
+        own.for_each_own_cell(own.communicator.rank(), [&](std::uint64_t cell,
+                                                           std::uint64_t local) {
+            offsets[cell + 1] = starts[local + 1] - starts[local];
+            mine.insert(mine.end(),
+                        records.begin() + static_cast<std::ptrdiff_t>(starts[local] * bytes),
+                        records.begin() + static_cast<std::ptrdiff_t>(starts[local + 1] * bytes));
+        });
+    });
+    own.communicator.reduce(offsets.data(), offsets.size(), MPI_SUM);
+    for (std::uint64_t cell = 0; cell < cells; ++cell) offsets[cell + 1] += offsets[cell];
+    std::vector<std::uint64_t> sizes(static_cast<std::size_t>(own.communicator.size()), 0);
+    sizes[static_cast<std::size_t>(own.communicator.rank())] = mine.size();
+    own.communicator.reduce(sizes.data(), sizes.size(), MPI_SUM);
+    on_all_ranks(*own.plan, [&] {
+        all = static_cast<std::byte*>(allocate(offsets[cells]));
+        of_rank = host_memory<std::byte>(*std::max_element(sizes.begin(), sizes.end()));
+    });
+    for (int rank = 0; rank < own.communicator.size(); ++rank) {
+        if (rank == own.communicator.rank()) std::copy(mine.begin(), mine.end(), of_rank.begin());
+        own.communicator.broadcast(of_rank.data(), sizes[static_cast<std::size_t>(rank)], rank);
+        const std::byte* from = of_rank.data();
+        own.for_each_own_cell(rank, [&](std::uint64_t cell, std::uint64_t) {
+            const std::uint64_t count = (offsets[cell + 1] - offsets[cell]) * bytes;
+            std::copy(from, from + count, all + offsets[cell] * bytes);
+            from += count;
+        });
+    }
+}
+
+}  // namespace cellist::detail

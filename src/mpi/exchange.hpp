@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <vector>
+
+#include <cellist/detail/memory.hpp>
+
+#include "mpi/communicator.hpp"
+
+namespace cellist::detail {
+
+/// Sends elements of device memory from each rank to each, through a bounded amount of page-locked
+/// host memory. OpenCL memory is never handed to MPI.
+class Exchange {
+public:
+    Exchange(const Communicator& communicator, MemoryOwner device)
+        : communicator_(communicator), device_(std::move(device)) {}
+    ~Exchange();
+    Exchange(const Exchange&) = delete;
+    Exchange& operator=(const Exchange&) = delete;
+
+    /// Sends the elements offsets[r] ... offsets[r + 1] - 1 of `from` to each rank r. Returns the
+    /// number of elements that arrive; they are in received(), by the rank that sent them.
+    /// Collective. Blocks.
+    std::uint64_t run(const Memory& from, const std::vector<cl_uint>& offsets,
+                      std::size_t element_bytes);
+    [[nodiscard]] const Memory& received() const { return received_; }
+
+    void set_message_bytes(std::uint64_t bytes);
+
+private:
+    struct Staging {
+        cl::Buffer memory;
+        std::byte* bytes = nullptr;
+        cl::Event used;  ///< the last copy between the device and the bytes
+        MPI_Request message = MPI_REQUEST_NULL;
+    };
+    struct Part {
+        int rank;
+        std::uint64_t first_byte;
+        std::uint64_t bytes;
+    };
+
+    void stage(std::uint64_t bytes);
+    void release() noexcept;
+    void send_and_receive(const Memory& from, const Part& to_send, const Part& to_receive);
+    void attempt(const std::function<void()>& call);
+
+    const Communicator& communicator_;
+    MemoryOwner device_;
+    Memory received_;
+    std::uint64_t message_bytes_ = std::uint64_t{16} << 20;
+    std::uint64_t staged_bytes_ = 0;
+    std::array<Staging, 2> out_;
+    std::array<Staging, 2> in_;
+    std::exception_ptr error_;  ///< of the device, until all messages have arrived
+};
+
+}  // namespace cellist::detail
