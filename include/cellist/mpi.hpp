@@ -29,10 +29,9 @@
 
 namespace cellist::mpi {
 
-/// Returns a device for this rank: of the GPUs of the host, the one with the rank's number among
-/// the ranks of this host. If there are more ranks than GPUs, ranks share them. Without a GPU, or if
-/// the environment variable CELLIST_DEVICE is set, returns Device::choose(). Collective. Throws
-/// what Device::choose() throws, on all ranks.
+/// Returns a device for this rank. The ranks of a host take its GPUs in turn, so more ranks than
+/// GPUs share them. Without a GPU, or if the environment variable CELLIST_DEVICE is set, returns
+/// Device::choose(). Collective. Throws what Device::choose() throws, on all ranks.
 [[nodiscard]] CELLIST_API Device choose(MPI_Comm comm);
 
 /// How cells are divided.
@@ -63,8 +62,8 @@ struct Block {
 /// communicator.
 class CELLIST_API Partition {
 public:
-    /// Divides the cells into blocks of about equal size. Duplicates `comm`, so that no message of
-    /// the library meets one of the program.
+    /// Divides the cells into blocks of about equal size. Duplicates `comm`: no message of the
+    /// library meets one of the program.
     ///
     /// Throws Error on all ranks if:
     /// - the ranks name different shapes or options; the message has both.
@@ -143,8 +142,8 @@ public:
               device.state(), detail::definitions_of<T>(), partition.plan(), options,
               local_.core())) {}
 
-    /// Builds the lists: runs `kernel(lists, args...)` over `range` on each rank, with the range and
-    /// the arguments of that rank. Then sends the records for cells of other ranks to these ranks.
+    /// Builds the lists: runs `kernel(lists, args...)` over `range` on each rank, with the range
+    /// and the arguments of that rank. Sends the records for cells of other ranks to these ranks.
     /// Collective. Returns the sums of all ranks' reports: `attempted == stored + dropped +
     /// rejected` holds exactly, and `passes` is the greatest number of any rank.
     ///
@@ -164,12 +163,14 @@ public:
     BuildReport build(std::invocable auto&& insert) { return core_->build(std::ref(insert)); }
 
     /// Copies the records of the cells next to each rank's block into its ghost cells. Collective.
-    /// Throws Error without ghost cells. The next build, or the next exchange, removes the copies.
-    /// A sort before it does not order the ghost cells.
+    /// Returns the sums of all ranks' reports of an append: `existing` are the records of the
+    /// lists, and `attempted` the copies. Throws Error without ghost cells. After another
+    /// exception, all lists are empty.
     ///
-    /// In Storage::linked and Storage::fixed, takes the time of the copies alone, the first time
-    /// after a build. Otherwise takes about as long as a build of the rank's own records.
-    void exchange_ghosts() { core_->exchange_ghosts(); }
+    /// The next build or exchange removes the copies. A sort before it does not order the ghost
+    /// cells. The first exchange after a build takes the time of an append: see
+    /// cellist::Lists::append(). Later ones also build the rank's own lists anew.
+    BuildReport exchange_ghosts() { return core_->exchange_ghosts(); }
 
     /// Empties the lists. Collective.
     void clear() { core_->clear(); }

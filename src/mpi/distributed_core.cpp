@@ -265,29 +265,44 @@ struct DistributedCore::Impl {
         });
     }
 
-    /// Builds the lists anew from a copy of the rank's own records and those that have arrived.
-    void build_with_received() {
+    /// Builds the lists anew from a copy of the rank's own records.
+    void remove_ghosts() {
         Memory offsets(device, lists.shape().cells() + 1, sizeof(cl_uint), "offsets of a copy");
         Memory records;
-        const RecordType& record = definitions.records.back();
+        const std::size_t record_bytes = definitions.records.back().size;
         lists.pack(
             offsets.cl(),
             [&](std::uint64_t count) -> const cl::Buffer& {
-                records = Memory(device, count, record.size, "copy of all records");
+                records = Memory(device, count, record_bytes, "copy of all records");
                 return records.cl();
             },
             "", "");
         lists.build([&] {
             Arguments arguments;
             lists.add_to(arguments);
-            Arguments own = arguments;
-            own.add(records.cl());
-            own.add(offsets.cl());
-            own.add(vector_of(plan->ghosts()));
-            own.add(vector_of(plan->own().extent));
-            kernel(keep_own, "cellist_keep_own").enqueue(box_range(plan->own().extent), own);
-            insert_received(std::move(arguments));
+            arguments.add(records.cl());
+            arguments.add(offsets.cl());
+            arguments.add(vector_of(plan->ghosts()));
+            arguments.add(vector_of(plan->own().extent));
+            kernel(keep_own, "cellist_keep_own").enqueue(box_range(plan->own().extent), arguments);
         });
+        has_ghosts = false;
+    }
+
+    /// The sum of all ranks' reports. Collective.
+    [[nodiscard]] BuildReport sum(const BuildReport& report) const {
+        std::array<std::uint64_t, 6> sums{report.attempted, report.stored,         report.dropped,
+                                          report.rejected,  report.capacity_nodes, report.existing};
+        communicator.reduce(sums.data(), sums.size(), MPI_SUM);
+        std::uint64_t passes = report.passes;
+        communicator.reduce(&passes, 1, MPI_MAX);
+        return {.attempted = sums[0],
+                .stored = sums[1],
+                .dropped = sums[2],
+                .rejected = sums[3],
+                .capacity_nodes = sums[4],
+                .passes = static_cast<std::uint32_t>(passes),
+                .existing = sums[5]};
     }
 
     /// Calls a function for each cell of a rank's block: its index in the whole shape and in the
@@ -367,40 +382,30 @@ BuildReport DistributedCore::build(const std::function<void()>& insert) {
             own.insert_received(std::move(arguments));
         });
     });
-    std::array<std::uint64_t, 6> sums{report.attempted, report.stored,         report.dropped,
-                                      report.rejected,  report.capacity_nodes, report.existing};
-    own.communicator.reduce(sums.data(), sums.size(), MPI_SUM);
-    std::uint64_t passes = report.passes;
-    own.communicator.reduce(&passes, 1, MPI_MAX);
-    return {.attempted = sums[0],
-            .stored = sums[1],
-            .dropped = sums[2],
-            .rejected = sums[3],
-            .capacity_nodes = sums[4],
-            .passes = static_cast<std::uint32_t>(passes),
-            .existing = sums[5]};
+    return own.sum(report);
 }
 
-void DistributedCore::exchange_ghosts() {
+BuildReport DistributedCore::exchange_ghosts() {
     Impl& own = *impl_;
     if (own.plan->options().ghosts == 0)
         throw Error(
             "a partition without ghost cells has none to exchange: set "
             "PartitionOptions::ghosts");
+    BuildReport report;
     own.change([&] {
-        own.agree([&] { own.copy_ghosts(); });
+        own.agree([&] {
+            if (own.has_ghosts) own.remove_ghosts();
+            own.copy_ghosts();
+        });
         own.send_all();
-        if (own.has_ghosts) {
-            own.build_with_received();
-        } else {
-            own.lists.append([&] {
-                Arguments arguments;
-                own.lists.add_to(arguments);
-                own.insert_received(std::move(arguments));
-            });
-        }
+        report = own.lists.append([&] {
+            Arguments arguments;
+            own.lists.add_to(arguments);
+            own.insert_received(std::move(arguments));
+        });
         own.has_ghosts = true;
     });
+    return own.sum(report);
 }
 
 void DistributedCore::clear() {

@@ -48,7 +48,7 @@ public:
     [[nodiscard]] cellist_distribution distribution() const;
 
     /// The tree of cuts: an axis, a position, and the parts before and from the position on. A
-    /// part is a cut, or -1 - r for the block of rank r. The root is the first, unless there is none.
+    /// part is a cut, or -1 - r for the block of rank r. The root is the first; one rank has none.
     [[nodiscard]] const std::vector<std::array<cl_int, 4>>& cuts() const { return cuts_; }
 
 private:

@@ -45,7 +45,7 @@ public:
 
     // All but the last ones are collective.
     BuildReport build(const std::function<void()>& insert);
-    void exchange_ghosts();
+    BuildReport exchange_ghosts();
     void clear();
     [[nodiscard]] Lengths lengths() const;
     [[nodiscard]] Validation validate() const;
