@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The main of tests that run on several ranks: all ranks run the same tests in the same order.
 #define CELLIST_TESTS_MAIN
+#include <csignal>
 #include <iostream>
 #include <optional>
 #include <sstream>
@@ -45,7 +46,70 @@ void cellist::test::with_all_counts(const std::function<void(MPI_Comm, int ranks
         with_ranks(ranks, [&](MPI_Comm comm) { call(comm, ranks); });
 }
 
+std::string cellist::test::common_error(MPI_Comm comm, const std::function<void()>& call) {
+    std::string message;
+    try {
+        call();
+    } catch (const std::exception& error) {
+        message = error.what();
+    }
+    std::string first = message;
+    unsigned size = static_cast<unsigned>(first.size());
+    MPI_Bcast(&size, 1, MPI_UNSIGNED, 0, comm);
+    first.resize(size);
+    MPI_Bcast(first.data(), static_cast<int>(size), MPI_CHAR, 0, comm);
+    int same = first == message ? 1 : 0;
+    MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_MIN, comm);
+    INFO("rank 0: '" << first << "', this rank: '" << message << "'");
+    REQUIRE(same == 1);
+    return message;
+}
+
+namespace {
+
+/// What must throw while MPI is not ready.
+bool refuses_partition(const std::string& part) {
+    try {
+        const cellist::mpi::Partition partition(MPI_COMM_WORLD, cellist::Shape{4});
+    } catch (const cellist::Error& error) {
+        if (std::string(error.what()).find(part) != std::string::npos) return true;
+        std::cerr << "another error than '" << part << "': " << error.what() << std::endl;
+        return false;
+    }
+    std::cerr << "no error: " << part << std::endl;
+    return false;
+}
+
+/// Tests states of MPI that no program of the other tests has.
+int run_single_threaded(int argument_count, char** arguments) {
+    bool refuses = refuses_partition("MPI is not initialised");
+    MPI_Init(&argument_count, &arguments);
+    int level = 0;
+    MPI_Query_thread(&level);
+    if (level == MPI_THREAD_SINGLE) refuses = refuses_partition("MPI_THREAD_SINGLE") && refuses;
+    MPI_Finalize();
+    return refuses && refuses_partition("after MPI_Finalize") ? 0 : 1;
+}
+
+/// One rank is killed while the others wait for it. Never returns.
+int run_with_killed_rank(int argument_count, char** arguments) {
+    int level = 0;
+    MPI_Init_thread(&argument_count, &arguments, MPI_THREAD_FUNNELED, &level);
+    cellist::mpi::Lists<cellist::test::Item> lists(
+        cellist::test::device(), cellist::mpi::Partition(MPI_COMM_WORLD, cellist::Shape{16}));
+    for (;;)
+        lists.build([] {
+            if (cellist::test::world_rank() == 1) std::raise(SIGKILL);
+        });
+}
+
+}  // namespace
+
 int main(int argument_count, char** arguments) {
+    if (argument_count == 2 && std::string(arguments[1]) == "single-threaded")
+        return run_single_threaded(argument_count, arguments);
+    if (argument_count == 2 && std::string(arguments[1]) == "killed")
+        return run_with_killed_rank(argument_count, arguments);
     int level = 0;
     MPI_Init_thread(&argument_count, &arguments, MPI_THREAD_FUNNELED, &level);
     // All ranks tell the same, unless one fails.

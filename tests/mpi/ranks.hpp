@@ -17,6 +17,10 @@ void with_ranks(int ranks, const std::function<void(MPI_Comm)>& call);
 /// The same for 1, 2, ... ranks, up to all of them.
 void with_all_counts(const std::function<void(MPI_Comm, int ranks)>& call);
 
+/// Calls a function that throws the same Error on all ranks, and returns the message. Empty if no
+/// rank throws. Fails if only some throw, or if the messages differ.
+[[nodiscard]] std::string common_error(MPI_Comm comm, const std::function<void()>& call);
+
 /// The part of the inserts that a rank makes: every `ranks`-th.
 template <class T>
 [[nodiscard]] Inserts<T> share_of(const Inserts<T>& all, int rank, int ranks) {

@@ -1,0 +1,12 @@
+# SPDX-License-Identifier: MIT
+# Runs a program in which one rank is killed. Fails unless the whole job ends within 10 seconds.
+#
+#   cmake -D command="mpirun;..." -P killed.cmake
+execute_process(COMMAND ${command} TIMEOUT 10 RESULT_VARIABLE result
+    OUTPUT_VARIABLE output ERROR_VARIABLE output)
+message("${output}")
+if(result MATCHES "timeout")
+    message(FATAL_ERROR "the job goes on after one rank was killed")
+elseif(result EQUAL 0)
+    message(FATAL_ERROR "the job succeeds although one rank was killed")
+endif()
