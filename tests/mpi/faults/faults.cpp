@@ -24,7 +24,11 @@ bool fails(MPI_Comm comm, int failing_rank, const faults::Plan& plan,
     MPI_Bcast(&failed, 1, MPI_INT, failing_rank, comm);
     // The library may do without memory that is missing. It never makes an error up.
     if (failed == 0) REQUIRE(text.empty());
-    if (!text.empty()) REQUIRE(text.starts_with("rank " + std::to_string(failing_rank) + ": cl"));
+    INFO(text);
+    const std::string rank_text = "rank " + std::to_string(failing_rank) + ": ";
+    // The C++ bindings have one name for all calls that retain objects.
+    if (!text.empty())
+        REQUIRE((text.starts_with(rank_text + "cl") || text.starts_with(rank_text + "Retain")));
     return failed == 1;
 }
 
@@ -32,6 +36,7 @@ bool fails(MPI_Comm comm, int failing_rank, const faults::Plan& plan,
 
 TEST_CASE("an OpenCL call that fails on one rank fails on all ranks") {
     CELLIST_EACH_STORAGE(storage);
+    (void)device();  // the loader loads layers at the first call
     REQUIRE(faults::loaded());
     CELLIST_RANDOM(random, 37u);
     const Shape shape{10, 10};
@@ -40,8 +45,10 @@ TEST_CASE("an OpenCL call that fails on one rank fails on all ranks") {
     const int ranks = world_size();
     const mpi::Partition partition(MPI_COMM_WORLD, shape, {.ghosts = 1, .periodic = {true}});
     for (const auto code : {faults::Plan::Code::resources, faults::Plan::Code::object})
-        for (std::uint64_t call = 1, failed = 0, rank = 0;
-             failed < static_cast<std::uint64_t>(ranks); call += 3) {
+        // Each call fails on one of the ranks, in turn.
+        for (std::uint64_t call = 1, missed = 0; missed < static_cast<std::uint64_t>(ranks);
+             call += 5) {
+            const int rank = static_cast<int>(call) % ranks;
             mpi::Lists<Item> lists(device(), partition, {.storage = storage, .capacity_nodes = 16});
             lists.core().set_message_bytes(100);
             DistributedInserter<Item> inserter(lists, inserts);
@@ -54,17 +61,13 @@ TEST_CASE("an OpenCL call that fails on one rank fails on all ranks") {
                 (void)lists.validate();
                 (void)lists.download();
             };
-            const bool has_failed =
-                fails(MPI_COMM_WORLD, static_cast<int>(rank), {.call = call, .code = code}, work);
+            const bool has_failed = fails(MPI_COMM_WORLD, rank, {.call = call, .code = code}, work);
             // The lists work as ever.
             require_complete(inserter.build(lists), inserts.size());
             lists.exchange_ghosts();
             REQUIRE(lists.validate().ok());
             require_same(lists.download(), oracle);
-            if (has_failed) continue;
-            ++failed;
-            ++rank;
-            call = rank;
+            missed = has_failed ? 0 : missed + 1;
         }
 }
 
