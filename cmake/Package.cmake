@@ -31,6 +31,9 @@ set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "${about}\nThis package has the head
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "ocl-icd-opencl-dev | opencl-dev, opencl-headers, opencl-clhpp-headers")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "cmake | pkgconf")
+if(TARGET cellist_mpi)
+    set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS libopenmpi-dev)
+endif()
 
 if(BUILD_SHARED_LIBS)
     list(APPEND CPACK_COMPONENTS_ALL library)

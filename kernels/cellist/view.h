@@ -96,17 +96,20 @@ typedef struct cellist_view {
 
 // How the cells of a distributed container are divided, as one rank sees it. Passed by value.
 typedef struct cellist_distribution {
-    cellist_view domain;       // the extents, the cells and the periodic axes of the whole shape
-    cellist_view outbox;       // the outbox as a pool of nodes
-    CELLIST_UINT origin[4];    // of the rank's block in the domain
-    CELLIST_UINT block[4];     // extents of the block; 0 if it is empty
-    CELLIST_UINT ghosts[4];    // layers of ghost cells on either side of the block
-    CELLIST_UINT held[4];      // extents of the rank's lists: block and ghosts
-    CELLIST_UINT inverse[3];   // of the extents of the domain, in units of 2^-32
-    CELLIST_UINT inserts;      // CELLIST_INSERT_...; 0 outside of a build
-    CELLIST_UINT range_first;  // the cells of a block that is a range of them ...
-    CELLIST_UINT range_cells;  // ... CELLIST_NONE for other blocks
-    CELLIST_UINT range_held;   // the first of them among the rank's lists
+    cellist_view domain;          // the extents, the cells and the periodic axes of the whole shape
+    cellist_view outbox;          // the outbox as a pool of nodes
+    CELLIST_UINT origin[4];       // of the rank's block in the domain
+    CELLIST_UINT block[4];        // extents of the block; 0 if it is empty
+    CELLIST_UINT ghosts[4];       // layers of ghost cells on either side of the block
+    CELLIST_UINT held[4];         // extents of the rank's lists: block and ghosts
+    CELLIST_UINT stride[3];       // cells of the domain in a row, a plane and a volume
+    CELLIST_UINT inverse[3];      // of these, in units of 2^-32
+    CELLIST_UINT held_stride[3];  // cells of the rank's lists in a row, a plane and a volume
+    CELLIST_UINT own_offset;      // from a cell's position times the strides to its index
+    CELLIST_UINT range_first;     // the cells of a block that is a range of them ...
+    CELLIST_UINT range_cells;     // ... CELLIST_NONE for other blocks; own_offset is then from the
+                                  // cell to its index
+    CELLIST_UINT inserts;         // CELLIST_INSERT_...; 0 outside of a build
 } cellist_distribution;
 
 // The counters of one shard, alone in its cache line. The struct after the last shard holds the

@@ -18,7 +18,7 @@
 namespace cellist::detail {
 
 /// What a Device and everything made from it share.
-struct DeviceState {
+struct CELLIST_API DeviceState {
     /// Throws cl::Error.
     DeviceState(cl::Context its_context, cl::CommandQueue its_queue, cl::Device its_device,
                 bool is_out_of_order, bool owns_its_queue);

@@ -18,10 +18,10 @@ inline void add_distribution(Arguments& arguments, const cellist_distribution& d
     arguments.set_type(distribution_type);
 }
 
-/// 2^32 / extent as cellist_divide takes it.
-inline cl_uint inverse_of(cl_uint extent) {
-    return static_cast<cl_uint>(
-        std::min<cl_ulong>((cl_ulong{1} << 32) / std::max(extent, 1U), CELLIST_NONE));
+/// The cells in a row, a plane and a volume of these extents.
+inline void set_strides(const cl_uint (&extent)[4], cl_uint (&stride)[3]) {
+    stride[0] = extent[0];
+    for (std::size_t i = 1; i < std::size(stride); ++i) stride[i] = stride[i - 1] * extent[i];
 }
 
 /// The distribution of a container that one device has alone: each cell is its own.
@@ -30,8 +30,11 @@ inline cellist_distribution whole_distribution(const cellist_view& view) {
     all.domain = view;
     std::copy(std::begin(view.extent), std::end(view.extent), std::begin(all.block));
     std::copy(std::begin(view.extent), std::end(view.extent), std::begin(all.held));
+    set_strides(view.extent, all.stride);
+    set_strides(view.extent, all.held_stride);
     for (std::size_t i = 0; i < std::size(all.inverse); ++i)
-        all.inverse[i] = inverse_of(view.extent[i]);
+        all.inverse[i] = static_cast<cl_uint>(
+            std::min<cl_ulong>((cl_ulong{1} << 32) / std::max(all.stride[i], 1U), CELLIST_NONE));
     all.inserts = view.open_cells != 0 ? CELLIST_INSERT_OWN : 0;
     all.range_cells = view.cells;
     return all;

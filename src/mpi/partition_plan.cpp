@@ -168,6 +168,22 @@ std::vector<std::uint64_t> PartitionPlan::layer_weights(const Block& block, std:
     return layers;
 }
 
+/// The axis along which to cut a block of about equal weights, with room for the ghost cells of both
+/// parts if it can be. The longest axis makes the shortest border. The slowest is cut first unless
+/// it is much shorter: blocks that divide no other axis are ranges of cells, for which an insert
+/// takes least.
+std::size_t PartitionPlan::axis_to_cut(const Block& block, std::uint64_t width) const {
+    const std::size_t slowest = shape_.dimensions() - 1;
+    const auto merit = [&](std::size_t axis) {
+        const std::uint64_t extent = block.extent[axis];
+        return extent < 2 * width ? 0 : extent * (axis == slowest ? 3 : 1);
+    };
+    std::size_t best = slowest;
+    for (std::size_t axis = slowest; axis-- > 0;)
+        if (merit(axis) > merit(best)) best = axis;
+    return best;
+}
+
 cl_int PartitionPlan::cut_in_two(const Block& block, int first_rank, int ranks,
                                  const Weights* weights) {
     if (ranks == 1) {
@@ -175,21 +191,13 @@ cl_int PartitionPlan::cut_in_two(const Block& block, int first_rank, int ranks,
         return -1 - first_rank;
     }
     const int half = ranks / 2;
-    // The longest axis makes the shortest border; of equal ones the slowest, whose blocks are
-    // ranges of cells. Blocks stay wide enough for their ghost cells if they can.
     const std::uint64_t width = std::max<std::uint64_t>(options_.ghosts, 1);
-    std::size_t longest = shape_.dimensions() - 1;
-    for (std::size_t axis = shape_.dimensions(); axis-- > 0;)
-        if (block.extent[axis] > block.extent[longest]) longest = axis;
-    const std::uint64_t extent = block.extent[longest];
-    const std::uint64_t low = std::min(width * static_cast<std::uint64_t>(half), extent);
-    const std::uint64_t reserved = width * static_cast<std::uint64_t>(ranks - half);
-    const bool has_room = low + reserved <= extent;
-    std::size_t axis = longest;
+    std::size_t axis = axis_to_cut(block, width);
+    const std::uint64_t extent = block.extent[axis];
     std::uint64_t before =
-        has_room ? extent * static_cast<std::uint64_t>(half) / static_cast<std::uint64_t>(ranks)
-                 : (extent + 1) / 2;
-    if (weights != nullptr && extent > 1) {
+        std::max(extent * static_cast<std::uint64_t>(half) / static_cast<std::uint64_t>(ranks),
+                 std::min(width, (extent + 1) / 2));
+    if (weights != nullptr) {
         double least = -1;
         for (std::size_t i = shape_.dimensions(); i-- > 0;) {
             if (block.extent[i] < 2 * width) continue;
@@ -200,12 +208,12 @@ cl_int PartitionPlan::cut_in_two(const Block& block, int first_rank, int ranks,
         }
     }
     const cl_int cut = add_cut(axis, block.origin[axis] + before);
-    Block low_block = block, high_block = block;
-    low_block.extent[axis] = before;
-    high_block.origin[axis] += before;
-    high_block.extent[axis] -= before;
-    const cl_int low_part = cut_in_two(low_block, first_rank, half, weights);
-    const cl_int high_part = cut_in_two(high_block, first_rank + half, ranks - half, weights);
+    Block low = block, high = block;
+    low.extent[axis] = before;
+    high.origin[axis] += before;
+    high.extent[axis] -= before;
+    const cl_int low_part = cut_in_two(low, first_rank, half, weights);
+    const cl_int high_part = cut_in_two(high, first_rank + half, ranks - half, weights);
     cuts_[static_cast<std::size_t>(cut)][2] = low_part;
     cuts_[static_cast<std::size_t>(cut)][3] = high_part;
     return cut;
@@ -321,18 +329,22 @@ cellist_distribution PartitionPlan::distribution() const {
         all.ghosts[axis] = static_cast<cl_uint>(ghosts_[axis]);
         all.held[axis] = static_cast<cl_uint>(extents[axis]);
     }
-    // A block is a range of cells if only the slowest axis is divided.
+    set_strides(all.held, all.held_stride);
+    const std::array<cl_uint, 4> held_stride{1, all.held_stride[0], all.held_stride[1],
+                                             all.held_stride[2]};
+    for (std::size_t axis = 0; axis < 4; ++axis)
+        all.own_offset += (all.ghosts[axis] - all.origin[axis]) * held_stride[axis];
+    // A block is a range of cells if only the slowest axis is divided. The strides are the same
+    // then.
     const std::size_t slowest = shape_.dimensions() - 1;
-    bool is_range = true;
-    std::uint64_t stride = 1;
-    for (std::size_t axis = 0; axis < slowest; ++axis) {
-        is_range = is_range && ghosts_[axis] == 0 && own().extent[axis] == shape_.extent(axis);
-        stride *= shape_.extent(axis);
+    bool is_range = own().cells() == 0;
+    if (!is_range) {
+        is_range = true;
+        for (std::size_t axis = 0; axis < slowest; ++axis)
+            is_range = is_range && own().extent[axis] == shape_.extent(axis) && ghosts_[axis] == 0;
     }
     all.range_cells = is_range ? static_cast<cl_uint>(own().cells()) : CELLIST_NONE;
-    all.range_first = static_cast<cl_uint>(own().origin[slowest] * stride);
-    all.range_held = static_cast<cl_uint>(ghosts_[slowest] * stride);
-    if (own().cells() == 0) all.range_first = all.range_cells = 0;
+    all.range_first = static_cast<cl_uint>(cell(own().origin));
     return all;
 }
 

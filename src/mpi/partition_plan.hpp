@@ -55,6 +55,7 @@ private:
     using Weights = std::vector<std::uint64_t>;
     cl_int cut_into_grid(const std::array<std::uint32_t, 4>& first,
                          const std::array<std::uint32_t, 4>& end);
+    [[nodiscard]] std::size_t axis_to_cut(const mpi::Block& block, std::uint64_t width) const;
     cl_int cut_in_two(const mpi::Block& block, int first_rank, int ranks, const Weights* weights);
     [[nodiscard]] std::vector<std::uint64_t> layer_weights(const mpi::Block& block,
                                                            std::size_t axis,

@@ -22,7 +22,7 @@
 namespace cellist::detail {
 
 /// The counters of a pool as they were when they were read.
-class Counters {
+class CELLIST_API Counters {
 public:
     struct Sum {
         std::uint64_t allocated = 0;  ///< nodes that are left in per-thread blocks count as free
@@ -42,7 +42,7 @@ private:
 
 /// The memory of a storage: heads, nodes and counters (allocation.clh), within the budget. The pool
 /// grows by the overflow policy.
-class NodePool {
+class CELLIST_API NodePool {
 public:
     struct Layout {
         std::size_t node_bytes;
