@@ -96,7 +96,7 @@ struct DistributedCore::Impl {
                   .is_linked = true}),
           distribution(plan->distribution()),
           exchange(communicator, device) {
-        outbox.allocate(communicator.size() > 1 ? outbox_nodes : 0);
+        outbox.allocate(is_divided() ? outbox_nodes : 0);
         send =
             std::make_shared<ListsCore>(device, with_sent(definitions), Shape{communicator.size()},
                                         ListsOptions{.storage = Storage::counted});
@@ -129,8 +129,12 @@ struct DistributedCore::Impl {
         return view;
     }
 
+    /// Whether kernels need to know how the cells are divided.
+    [[nodiscard]] bool is_divided() const { return communicator.size() > 1; }
+
     void add_to(Arguments& arguments) const {
-        lists.add_to(arguments);
+        arguments.add_lists(lists);
+        if (!is_divided()) return;
         arguments.add_mode(CELLIST_DISTRIBUTED_MODE);
         arguments.add(outbox.nodes());
         arguments.add(outbox.counters());
@@ -362,7 +366,7 @@ BuildReport DistributedCore::build(const std::function<void()>& insert) {
     own.change([&] {
         own.received = 0;
         own.has_ghosts = false;
-        bool has_sent = own.communicator.size() == 1;
+        bool has_sent = !own.is_divided();
         const auto exchange = [&](cl_uint mode) {
             own.agree([&] { own.fill_outbox(insert, mode); });
             own.send_all();
@@ -417,7 +421,7 @@ void DistributedCore::add_to(Arguments& arguments) const { impl_->add_to(argumen
 
 Definitions DistributedCore::definitions() const {
     Definitions all = impl_->definitions;
-    all.modes = impl_->lists.mode() | CELLIST_DISTRIBUTED_MODE;
+    all.modes = impl_->lists.mode() | (impl_->is_divided() ? CELLIST_DISTRIBUTED_MODE : 0);
     return all;
 }
 

@@ -144,9 +144,9 @@ public:
         return argument.kind == Kind::local ? nullptr : bytes_.data() + argument.offset;
     }
 
-private:
     void add_lists(const ListsCore& lists);  // in lists_core.cpp
 
+private:
     std::vector<Argument> arguments_;
     std::vector<ClosedLists> closed_;
     std::vector<std::byte> bytes_;
