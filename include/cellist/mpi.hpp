@@ -25,6 +25,7 @@
 #include <mpi.h>
 
 #include <cellist/detail/distributed_core.hpp>
+#include <cellist/detail/owned.hpp>
 #include <cellist/lists.hpp>
 
 namespace cellist::mpi {
@@ -102,12 +103,14 @@ public:
     [[nodiscard]] std::optional<std::uint64_t> cell(std::uint64_t local_cell) const;
 
     /// @private
-    [[nodiscard]] const std::shared_ptr<const detail::PartitionPlan>& plan() const { return plan_; }
+    [[nodiscard]] const std::shared_ptr<const detail::PartitionPlan>& plan() const {
+        return plan_.pointer();
+    }
 
 private:
     explicit Partition(std::shared_ptr<const detail::PartitionPlan> plan)
-        : plan_(std::move(plan)) {}
-    std::shared_ptr<const detail::PartitionPlan> plan_;
+        : plan_("a Partition", std::move(plan)) {}
+    detail::Owned<std::shared_ptr<const detail::PartitionPlan>> plan_;
 };
 
 /// A list of records T for each cell of a shape, in the device memory of all ranks.
@@ -123,13 +126,14 @@ private:
 /// fails, all ranks throw the same error, whose message names that rank. An OpenClError's call()
 /// then names the rank, too. All functions throw what those of cellist::Lists throw.
 ///
-/// Owned by value: movable, not copyable.
+/// Owned by value: movable, not copyable. Using moved-from Lists throws Error.
 template <class T>
 class Lists {
 public:
     /// Makes empty lists on this rank's device. Collective. Throws Error on all ranks if the ranks
-    /// name different records, options or storages; the message has both. The capacity, slots and
-    /// the budget of the options hold for each rank. The periodic axes are those of the partition.
+    /// name different records, storages or policies; the message has both. The capacity, slots and
+    /// the budget of the options hold for the lists of each rank; the outbox and the messages take
+    /// further memory. The periodic axes are those of the partition.
     Lists(const Device& device, const Partition& partition, const ListsOptions& options = {})
         : partition_(partition),
           local_(detail::on_all_ranks<cellist::Lists<T>>(
@@ -138,9 +142,9 @@ public:
                   return cellist::Lists<T>(device, partition.local_shape(),
                                            detail::local_options(*partition.plan(), options));
               })),
-          core_(std::make_unique<detail::DistributedCore>(
-              device.state(), detail::definitions_of<T>(), partition.plan(), options,
-              local_.core())) {}
+          core_("a distributed Lists object", std::make_unique<detail::DistributedCore>(
+                                                  device.state(), detail::definitions_of<T>(),
+                                                  partition.plan(), options, local_.core())) {}
 
     /// Builds the lists: runs `kernel(lists, args...)` over `range` on each rank, with the range
     /// and the arguments of that rank. Sends the records for cells of other ranks to these ranks.
@@ -229,7 +233,7 @@ private:
 
     Partition partition_;
     cellist::Lists<T> local_;
-    std::unique_ptr<detail::DistributedCore> core_;
+    detail::Owned<std::unique_ptr<detail::DistributedCore>> core_;
 };
 
 }  // namespace cellist::mpi

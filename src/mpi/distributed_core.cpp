@@ -5,36 +5,12 @@
 
 #include <cellist/detail/distributed_core.hpp>
 
-#include "cellist_mpi_kernels.hpp"
-#include "device/distribution.hpp"
-#include "mpi/exchange.hpp"
+#include "mpi/outbox.hpp"
 #include "mpi/partition_plan.hpp"
-#include "storage/container_storage.hpp"
 
 namespace cellist::detail {
 
 namespace {
-
-/// Nodes of an outbox at first. It grows to what a build needs.
-constexpr std::uint64_t outbox_nodes = 65536;
-
-/// The struct of a record and its cell, as cellist_node_T has them.
-RecordType sent_type(const RecordType& record) {
-    const NodeLayout layout = node_layout(record);
-    const std::size_t cell =
-        (record.size + sizeof(cl_uint) - 1) / sizeof(cl_uint) * sizeof(cl_uint);
-    return {"cellist_sent_" + record.name,
-            layout.size,
-            std::max(record.alignment, sizeof(cl_uint)),
-            {{"record", "struct " + record.name, {}, 0, {}, false},
-             {"cell", "uint", {}, cell, {}, false}}};
-}
-
-Definitions with_sent(Definitions definitions) {
-    const RecordType sent = sent_type(definitions.records.back());
-    definitions.add(sent);
-    return definitions;
-}
 
 std::string lists_text(const RecordType& record, const ListsOptions& options) {
     std::string text = "lists of struct " + record.name + " {";
@@ -90,132 +66,44 @@ struct DistributedCore::Impl {
           device(std::move(state)),
           definitions(std::move(its_definitions)),
           is_automatic(Storage(options.storage) == Storage::automatic),
-          outbox(device, Shape{1}, ListsOptions{.budget_bytes = options.budget_bytes},
-                 {.node_bytes = node_layout(definitions.records.back()).size,
-                  .head_words_a_cell = 1,
-                  .is_linked = true}),
-          distribution(plan->distribution()),
-          exchange(communicator, device) {
-        outbox.allocate(is_divided() ? outbox_nodes : 0);
-        send =
-            std::make_shared<ListsCore>(device, with_sent(definitions), Shape{communicator.size()},
-                                        ListsOptions{.storage = Storage::counted});
-        const auto& tree = plan->cuts();
-        cuts = Memory(device, tree.size(), sizeof tree[0], "cuts");
-        cuts.write(tree.data(), tree.size() * sizeof tree[0]);
-        outbox.clear(outbox.heads(), CELLIST_NONE, 0, 1);
-    }
-
-    Kernel& kernel(std::optional<Kernel>& place, const char* name) {
-        if (!place) {
-            const RecordType& record = definitions.records.back();
-            Definitions all = with_sent(definitions);
-            all.modes = lists.mode() | send->mode();
-            place.emplace(device,
-                          Source{.text = "#define CELLIST_RECORD " + record.name +
-                                         "\n#define CELLIST_SENT cellist_sent_" + record.name +
-                                         "\n#line 1 \"exchange.cl\"\n" +
-                                         std::string(cellist_mpi::kernels::exchange_cl)},
-                          name, all);
-        }
-        return *place;
-    }
-
-    [[nodiscard]] cellist_view outbox_view() const {
-        cellist_view view{};
-        view.pool_nodes = static_cast<cl_uint>(outbox.nodes_count());
-        view.shard_bits = outbox.shard_bits();
-        view.thread_slots = outbox.thread_slots();
-        return view;
-    }
+          kernels(device, definitions),
+          outbox(device, kernels, *plan) {}
 
     /// Whether kernels need to know how the cells are divided.
     [[nodiscard]] bool is_divided() const { return communicator.size() > 1; }
 
     void add_to(Arguments& arguments) const {
         arguments.add_lists(lists);
-        if (!is_divided()) return;
-        arguments.add_mode(CELLIST_DISTRIBUTED_MODE);
-        arguments.add(outbox.nodes());
-        arguments.add(outbox.counters());
-        cellist_distribution now = distribution;
-        now.outbox = outbox_view();
-        now.inserts = inserts;
-        add_distribution(arguments, now);
+        if (is_divided()) outbox.add_to(arguments, inserts);
     }
 
-    /// Runs the user's kernels. What they insert goes where `mode` says.
+    /// Runs the user's kernels, which may insert what `mode` says.
     void run(const std::function<void()>& insert, cl_uint mode) {
         inserts = mode;
-        try {
-            insert();
-        } catch (...) {
-            inserts = 0;
-            throw;
-        }
+        insert();
         inserts = 0;
     }
 
-    /// Runs the user's kernels, and again until the outbox holds all foreign records. Then brings
-    /// these in the order of the ranks.
-    void fill_outbox(const std::function<void()>& insert, cl_uint mode) {
-        outbox.start_build();
-        for (;;) {
-            outbox.clear(outbox.heads(), CELLIST_NONE, 0, 1);
-            run(insert, mode);
-            Counters counters;
-            ReadbackFence fence;
-            fence.add(outbox.read(counters));
-            fence.wait();
-            const Counters::Sum sum = counters.sum();
-            if (sum.dropped == 0) break;
-            const BuildReport report{.attempted = sum.allocated + sum.dropped};
-            outbox.require(report.attempted, report);
-            outbox.grow(report.attempted, report);
-            // The rank's own records are in its lists.
-            mode = CELLIST_INSERT_FOREIGN;
-        }
-        send->build([&] {
-            Arguments arguments;
-            send->add_to(arguments);
-            arguments.add(outbox.nodes());
-            arguments.add(outbox.counters());
-            const cellist_view pool = outbox_view();
-            arguments.append(Arguments::Kind::value, &pool, sizeof pool);
-            arguments.append(Arguments::Kind::value, &distribution.domain,
-                             sizeof distribution.domain);
-            arguments.add(cuts);
-            kernel(route, "cellist_route").enqueue(Range::padded(pool.pool_nodes), arguments);
-        });
+    /// Collects the foreign records and sends them, on all ranks.
+    void exchange(const std::function<void()>& insert, cl_uint mode) {
+        agree([&] { outbox.fill([&](cl_uint now) { run(insert, now); }, mode); });
+        send();
     }
 
-    /// Sends what is in the send lists. Collective.
-    void send_all() {
-        const ListStorage& storage = send->storage().in_use();
-        std::vector<cl_uint> offsets(static_cast<std::size_t>(communicator.size()) + 1, 0);
-        agree([&] {
-            storage.pool().heads().read(offsets.data(), offsets.size() * sizeof offsets[0]);
-        });
-        try {
-            received = exchange.run(storage.pool().nodes(), offsets, storage.pool().node_bytes());
-        } catch (...) {
-            agreed = std::current_exception();
-            throw;
-        }
-    }
-
-    /// Inserts what has arrived. The container of the arguments takes cells of the records.
-    void insert_received(Arguments arguments) {
-        if (received == 0) return;
-        arguments.add(exchange.received());
-        arguments.add(static_cast<cl_uint>(received));
-        kernel(receive, "cellist_receive").enqueue(Range::padded(received), arguments);
+    /// Sends what is to be sent, on all ranks.
+    void send() {
+        remember([&] { outbox.send(); });
     }
 
     /// Calls a function on all ranks within a build, and remembers that all know of its failure.
     void agree(const std::function<void()>& call) {
+        remember([&] { communicator.together(call); });
+    }
+
+    /// Calls a function that throws the same on all ranks, and keeps what it throws.
+    void remember(const std::function<void()>& call) {
         try {
-            communicator.together(call);
+            call();
         } catch (...) {
             agreed = std::current_exception();
             throw;
@@ -254,17 +142,18 @@ struct DistributedCore::Impl {
     }
 
     void copy_ghosts() {
-        send->build([&] {
+        outbox.fill_send_lists([&](ListsCore& send) {
             for (const GhostCopy& copy : plan->ghost_copies()) {
                 Arguments arguments;
-                send->add_to(arguments);
+                send.add_to(arguments);
                 lists.add_to(arguments);
                 arguments.add(vector_of(copy.first));
                 arguments.add(vector_of(copy.extent));
                 arguments.add(vector_of(copy.target));
                 arguments.add(vector_of(plan->held(copy.rank)));
                 arguments.add(static_cast<cl_uint>(copy.rank));
-                kernel(copy_box, "cellist_copy_box").enqueue(box_range(copy.extent), arguments);
+                kernels.get("cellist_copy_box", arguments.modes())
+                    .enqueue(box_range(copy.extent), arguments);
             }
         });
     }
@@ -288,7 +177,8 @@ struct DistributedCore::Impl {
             arguments.add(offsets.cl());
             arguments.add(vector_of(plan->ghosts()));
             arguments.add(vector_of(plan->own().extent));
-            kernel(keep_own, "cellist_keep_own").enqueue(box_range(plan->own().extent), arguments);
+            kernels.get("cellist_keep_own", arguments.modes())
+                .enqueue(box_range(plan->own().extent), arguments);
         });
         has_ghosts = false;
     }
@@ -336,16 +226,11 @@ struct DistributedCore::Impl {
     MemoryOwner device;
     Definitions definitions;
     bool is_automatic;
-    NodePool outbox;
-    cellist_distribution distribution;
-    Exchange exchange;
-    std::shared_ptr<ListsCore> send;  ///< one cell a rank
-    Memory cuts;
-    cl_uint inserts = 0;         ///< what kernels may insert now
-    std::uint64_t received = 0;  ///< by the last exchange
+    ExchangeKernels kernels;
+    Outbox outbox;
+    cl_uint inserts = 0;  ///< what kernels may insert now
     bool has_ghosts = false;
     std::exception_ptr agreed;  ///< a failure that all ranks have thrown
-    std::optional<Kernel> route, receive, copy_box, keep_own;
 };
 
 DistributedCore::DistributedCore(std::shared_ptr<DeviceState> device, Definitions definitions,
@@ -364,26 +249,27 @@ BuildReport DistributedCore::build(const std::function<void()>& insert) {
     Impl& own = *impl_;
     BuildReport report;
     own.change([&] {
-        own.received = 0;
+        own.outbox.clear_received();
         own.has_ghosts = false;
         bool has_sent = !own.is_divided();
-        const auto exchange = [&](cl_uint mode) {
-            own.agree([&] { own.fill_outbox(insert, mode); });
-            own.send_all();
-            has_sent = true;
-        };
         // Builds that measure a storage do not contain the exchange.
-        if (own.is_automatic && !has_sent) exchange(CELLIST_INSERT_FOREIGN);
+        if (own.is_automatic && !has_sent) {
+            own.exchange(insert, CELLIST_INSERT_FOREIGN);
+            has_sent = true;
+        }
         report = own.lists.build([&] {
-            if (has_sent)
-                own.run(insert, CELLIST_INSERT_OWN);
+            if (!has_sent)
+                own.exchange(insert, CELLIST_INSERT_OWN | CELLIST_INSERT_FOREIGN);
             else
-                exchange(CELLIST_INSERT_OWN | CELLIST_INSERT_FOREIGN);
-            Arguments arguments;
-            own.inserts = CELLIST_INSERT_OWN;
-            own.add_to(arguments);
-            own.inserts = 0;
-            own.insert_received(std::move(arguments));
+                own.run(insert, CELLIST_INSERT_OWN);
+            has_sent = true;
+            own.run(
+                [&] {
+                    Arguments arguments;
+                    own.add_to(arguments);
+                    own.outbox.insert_received(std::move(arguments));
+                },
+                CELLIST_INSERT_OWN);
         });
     });
     return own.sum(report);
@@ -401,11 +287,11 @@ BuildReport DistributedCore::exchange_ghosts() {
             if (own.has_ghosts) own.remove_ghosts();
             own.copy_ghosts();
         });
-        own.send_all();
+        own.send();
         report = own.lists.append([&] {
             Arguments arguments;
             own.lists.add_to(arguments);
-            own.insert_received(std::move(arguments));
+            own.outbox.insert_received(std::move(arguments));
         });
         own.has_ghosts = true;
     });
@@ -426,7 +312,7 @@ Definitions DistributedCore::definitions() const {
 }
 
 void DistributedCore::set_message_bytes(std::uint64_t bytes) {
-    impl_->exchange.set_message_bytes(bytes);
+    impl_->outbox.set_message_bytes(bytes);
 }
 
 Lengths DistributedCore::lengths() const {

@@ -35,7 +35,7 @@ Device choose(MPI_Comm comm) {
 }
 
 Partition::Partition(MPI_Comm comm, const Shape& shape, const PartitionOptions& options)
-    : plan_(std::make_shared<detail::PartitionPlan>(comm, shape, options, nullptr)) {}
+    : Partition(std::make_shared<detail::PartitionPlan>(comm, shape, options, nullptr)) {}
 
 Partition Partition::balanced(MPI_Comm comm, const Shape& shape,
                               const std::vector<std::uint64_t>& weights,

@@ -6,6 +6,7 @@
 #   build_dir    a finished build of it, which find_package installs from
 #   work_dir     directory of this test; emptied first
 #   config, generator, make_program, cxx_compiler, cxx_flags   as in that build
+#   mpiexec      the program that starts ranks, or empty
 #
 # An installed package must work where it was moved to and without a trace of where it came from,
 # so it is installed to one prefix, moved to another, and used there.
@@ -61,6 +62,10 @@ run("${CMAKE_COMMAND}" --build "${work_dir}/build" --config "${config}")
 find_program(consumer consumer NO_DEFAULT_PATH NO_CACHE REQUIRED
     PATHS "${work_dir}/build" "${work_dir}/build/${config}")
 run("${consumer}")
+find_program(mpi_consumer mpi_consumer NO_DEFAULT_PATH NO_CACHE PATHS "${work_dir}/build")
+if(mpi_consumer AND mpiexec)
+    run("${mpiexec}" -n 2 "${mpi_consumer}")
+endif()
 
 if(way STREQUAL "find_package")
     find_program(nm nm)

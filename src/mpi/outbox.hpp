@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include <cellist/detail/lists_core.hpp>
+
+#include "mpi/exchange.hpp"
+#include "mpi/partition_plan.hpp"
+#include "storage/node_pool.hpp"
+
+namespace cellist::detail {
+
+/// The kernels of exchange.cl for a record type. Compiles a kernel when it is first needed.
+class ExchangeKernels {
+public:
+    /// The last of the definitions is the record.
+    ExchangeKernels(MemoryOwner device, Definitions definitions)
+        : device_(std::move(device)), definitions_(std::move(definitions)) {}
+
+    /// `modes` are those of the containers that it is compiled for first.
+    [[nodiscard]] Kernel& get(const std::string& name, unsigned modes);
+    [[nodiscard]] const RecordType& record() const { return definitions_.records.back(); }
+    /// The last of them is a struct of a record and its cell, in the layout of cellist_node_T.
+    [[nodiscard]] Definitions sent_definitions() const;
+
+private:
+    MemoryOwner device_;
+    Definitions definitions_;
+    std::map<std::string, Kernel> kernels_;
+};
+
+/// The records of this rank for the lists of other ranks, and those that others have sent.
+class Outbox {
+public:
+    Outbox(const MemoryOwner& device, ExchangeKernels& kernels, const PartitionPlan& plan);
+
+    /// Adds the outbox and the distribution, which CELLIST_LISTS declares after a container.
+    void add_to(Arguments& arguments, cl_uint inserts) const;
+
+    /// Fills the outbox: `run` runs kernels that insert what its argument says, CELLIST_INSERT_...
+    /// It runs again for foreign records alone while the outbox is too small. Then puts the records
+    /// in the order of the ranks. Blocks.
+    void fill(const std::function<void(cl_uint)>& run, cl_uint inserts);
+    /// Fills the lists of records to send: `insert` inserts into them. They have one cell a rank.
+    void fill_send_lists(const std::function<void(ListsCore&)>& insert) {
+        send_->build([&] { insert(*send_); });
+    }
+    /// Sends them. Collective. Blocks.
+    void send();
+    /// Inserts what has arrived. The container of the arguments takes the cells of the records.
+    void insert_received(Arguments arguments);
+    /// Forgets what has arrived.
+    void clear_received() { received_ = 0; }
+
+    void set_message_bytes(std::uint64_t bytes) { exchange_.set_message_bytes(bytes); }
+
+private:
+    [[nodiscard]] cellist_view view() const;
+    void clear() { pool_.clear(pool_.heads(), CELLIST_NONE, 0, 1); }
+
+    const Communicator& communicator_;
+    ExchangeKernels& kernels_;
+    NodePool pool_;
+    cellist_distribution distribution_;
+    std::shared_ptr<ListsCore> send_;
+    Memory cuts_;
+    Exchange exchange_;
+    std::uint64_t received_ = 0;
+};
+
+}  // namespace cellist::detail
