@@ -84,7 +84,7 @@ static uint cellist_keep_nearest(CELLIST_LISTS(CELLIST_RECORD, lists), uint k, u
 kernel __attribute__((reqd_work_group_size(CELLIST_TEAM, 1, 1))) void cellist_find_nearest(
     CELLIST_LISTS(CELLIST_RECORD, lists), global const CELLIST_QUERY* queries, uint count, uint k,
     uint radius_cells, float radius, const cellist_values values, global uint* counts,
-    global struct CELLIST_RECORD* records, global float* distances) {
+    global CELLIST_RECORD_TYPE* records, global float* distances) {
     local float nearest[CELLIST_COLLECTED];
     local uint nodes[CELLIST_COLLECTED];
     local float kept_nearest[CELLIST_K_MAX];
@@ -103,7 +103,7 @@ kernel __attribute__((reqd_work_group_size(CELLIST_TEAM, 1, 1))) void cellist_fi
              first = cellist_skip(lists_nodes, lists_typed, first, around.end, CELLIST_TEAM)) {
             const uint node = cellist_skip(lists_nodes, lists_typed, first, around.end, item);
             if (node < around.end) {
-                const struct CELLIST_RECORD record = cellist_get(lists, node);
+                const CELLIST_RECORD_TYPE record = cellist_get(lists, node);
                 const float distance = cellist_distance(&record, &query, values);
                 if (distance <= radius) {
                     const uint at = atomic_inc(&collected);
@@ -139,7 +139,7 @@ kernel __attribute__((reqd_work_group_size(CELLIST_TEAM, 1, 1))) void cellist_fi
 kernel void cellist_find_nearest(CELLIST_LISTS(CELLIST_RECORD, lists),
                                  global const CELLIST_QUERY* queries, uint count, uint k,
                                  uint radius_cells, float radius, const cellist_values values,
-                                 global uint* counts, global struct CELLIST_RECORD* records,
+                                 global uint* counts, global CELLIST_RECORD_TYPE* records,
                                  global float* distances) {
     const uint i = get_global_id(0);
     if (i >= count) return;
@@ -148,7 +148,7 @@ kernel void cellist_find_nearest(CELLIST_LISTS(CELLIST_RECORD, lists),
     uint nodes[CELLIST_K_MAX];
     uint found = 0;
     cellist_for_each_around(lists, cellist_query_place(&query, values), radius_cells, node) {
-        const struct CELLIST_RECORD record = cellist_get(lists, node);
+        const CELLIST_RECORD_TYPE record = cellist_get(lists, node);
         const float distance = cellist_distance(&record, &query, values);
         if (!(distance <= radius)) continue;
         if (found == k && (k == 0 || !cellist_is_nearer(CELLIST_PASS(lists), distance, node,

@@ -35,7 +35,7 @@ kernel void cellist_check_selection(CELLIST_LISTS(CELLIST_RECORD, lists),
     const uint remaining = lists_heads[cellist_row(lists_view, CELLIST_ROW_REMAINING, cell)];
     const uint equals = lists_heads[cellist_row(lists_view, CELLIST_ROW_EQUALS, cell)];
     if (cell == 0)
-        selection->words = cellist_record_words((struct CELLIST_RECORD*)0, lists_view.key_member);
+        selection->words = cellist_record_words((CELLIST_RECORD_TYPE*)0, lists_view.key_member);
     if (equals > remaining) atomic_inc(&selection->undecided);
 
     int at_the_end = 1;

@@ -25,7 +25,7 @@
 #ifdef CELLIST_CANDIDATES
 
 typedef struct cellist_candidates {
-    struct CELLIST_RECORD records[CELLIST_CANDIDATES];
+    CELLIST_RECORD_TYPE records[CELLIST_CANDIDATES];
     uint nodes[CELLIST_CANDIDATES];
     uint count;
 } cellist_candidates;
@@ -38,7 +38,7 @@ static void cellist_compare(CELLIST_LISTS(CELLIST_RECORD, lists),
     uint is_neighbour[CELLIST_CANDIDATES];
     uint found[CELLIST_CANDIDATES];
     for (uint i = begin; i < end; ++i) {
-        const struct CELLIST_RECORD record = cellist_get(lists, i);
+        const CELLIST_RECORD_TYPE record = cellist_get(lists, i);
         uint length = 0;
         for (uint j = 0; j < candidates->count; ++j) {
             is_neighbour[j] =
@@ -104,12 +104,12 @@ kernel void cellist_neighbours(CELLIST_LISTS(CELLIST_RECORD, lists), uint radius
                                global uint* indices, uint records, global const uint* cells) {
     const uint i = get_global_id(0);
     if (i >= records) return;
-    const struct CELLIST_RECORD record = cellist_get(lists, i);
+    const CELLIST_RECORD_TYPE record = cellist_get(lists, i);
     const uint begin = stores ? offsets[i] : 0;
     const uint end = stores ? offsets[i + 1] : CELLIST_NONE;
     uint at = begin;
     cellist_for_each_around(lists, cells[i], radius_cells, node) {
-        const struct CELLIST_RECORD other = cellist_get(lists, node);
+        const CELLIST_RECORD_TYPE other = cellist_get(lists, node);
         if (node == i || !(cellist_distance(&record, &other, values) <= radius)) continue;
         if (at == end) break;
         if (stores) indices[at] = CELLIST_INDEX(node);

@@ -19,8 +19,6 @@
 
 #define CELLIST_NODE_OF(T) CELLIST_NODE_OF_EXPANDED(T)
 #define CELLIST_NODE_OF_EXPANDED(T) cellist_node_##T
-#define CELLIST_STRUCT_OF(T) CELLIST_STRUCT_OF_EXPANDED(T)
-#define CELLIST_STRUCT_OF_EXPANDED(T) struct T
 
 // What work-items have in arrays stays in registers only where loops are unrolled.
 #define CELLIST_UNROLLED _Pragma("unroll")
@@ -128,12 +126,12 @@ static inline void cellist_scan_counts(local uint* counts, local uint* sums) {
 #define CELLIST_STAGED_SIZE (CELLIST_REGION_STAGED * CELLIST_RECORD_WORDS * 33 / 32)
 #define CELLIST_STAGED_AT(word) ((word) + (word) / 32)
 #else
-#define CELLIST_STAGED_TYPE CELLIST_STRUCT_OF(CELLIST_RECORD)
+#define CELLIST_STAGED_TYPE CELLIST_RECORD_TYPE
 #define CELLIST_STAGED_SIZE CELLIST_REGION_STAGED
 #endif
 
 static inline void cellist_stage(local CELLIST_STAGED_TYPE* staged, uint at,
-                                 const CELLIST_STRUCT_OF(CELLIST_RECORD) * record) {
+                                 const CELLIST_RECORD_TYPE* record) {
 #if CELLIST_RECORD_WORDS
     CELLIST_UNROLLED
     for (uint w = 0; w < CELLIST_RECORD_WORDS; ++w)
@@ -145,7 +143,7 @@ static inline void cellist_stage(local CELLIST_STAGED_TYPE* staged, uint at,
 
 // Writes the first records in local memory to consecutive nodes.
 static inline void cellist_write_staged(local const CELLIST_STAGED_TYPE* staged, uint length,
-                                        global CELLIST_STRUCT_OF(CELLIST_RECORD) * nodes) {
+                                        global CELLIST_RECORD_TYPE* nodes) {
     const uint item = get_local_id(0);
 #if CELLIST_RECORD_WORDS
     for (uint w = item; w < length * CELLIST_RECORD_WORDS; w += CELLIST_REGION_GROUP)
@@ -178,7 +176,7 @@ kernel __attribute__((reqd_work_group_size(CELLIST_REGION_GROUP, 1, 1))) void ce
 
     for (uint i = item; i < CELLIST_REGION_CELLS; i += CELLIST_REGION_GROUP) counts[i] = 0;
     barrier(CLK_LOCAL_MEM_FENCE);
-    CELLIST_STRUCT_OF(CELLIST_RECORD) records[CELLIST_REGION_EACH];
+    CELLIST_RECORD_TYPE records[CELLIST_REGION_EACH];
     uint cell[CELLIST_REGION_EACH];  // then the place among the partition's records
     uint rank[CELLIST_REGION_EACH];
     const bool fits = length <= CELLIST_REGION_RECORDS;

@@ -17,7 +17,7 @@ kernel void cellist_remove(CELLIST_LISTS(CELLIST_RECORD, lists), global uint* le
     cellist_for_each(lists, cell, node) {
         if (cellist_sort_key(&cellist_get(lists, node), values) & 1u) continue;
         if (end != node) {
-            const struct CELLIST_RECORD stays = cellist_get(lists, node);
+            const CELLIST_RECORD_TYPE stays = cellist_get(lists, node);
             cellist_get(lists, node) = cellist_get(lists, end);
             cellist_get(lists, end) = stays;
         }

@@ -79,7 +79,7 @@ typedef struct cellist_sort_node {
 } cellist_sort_node;
 #define cellist_sort_record(node) ((node).stored.record)
 #else
-    struct CELLIST_RECORD stored;
+    CELLIST_RECORD_TYPE stored;
 } cellist_sort_node;
 #define cellist_sort_record(node) ((node).stored)
 #endif
@@ -146,8 +146,8 @@ static inline void cellist_sort_leave(global uint* longer, uint longer_end, uint
 }
 
 // Whether record a, with key x, comes before record b, with key y.
-static inline uint cellist_sort_before(global const struct CELLIST_RECORD* a, cellist_sort_bits x,
-                                       global const struct CELLIST_RECORD* b, cellist_sort_bits y) {
+static inline uint cellist_sort_before(global const CELLIST_RECORD_TYPE* a, cellist_sort_bits x,
+                                       global const CELLIST_RECORD_TYPE* b, cellist_sort_bits y) {
     return x != y ? x < y : cellist_record_before(a, b, 0);
 }
 

@@ -73,14 +73,13 @@ static inline void cellist_sort_cell(CELLIST_LISTS(CELLIST_RECORD, lists), uint 
 
 #else
 
-static inline int cellist_sort_is_first(global const struct CELLIST_RECORD* a,
-                                        global const struct CELLIST_RECORD* b,
+static inline int cellist_sort_is_first(global const CELLIST_RECORD_TYPE* a,
+                                        global const CELLIST_RECORD_TYPE* b,
                                         const cellist_values values) {
     return cellist_sort_before(a, cellist_sort_key(a, values), b, cellist_sort_key(b, values));
 }
 
-static inline void cellist_sort_swap(global struct CELLIST_RECORD* a,
-                                     global struct CELLIST_RECORD* b) {
+static inline void cellist_sort_swap(global CELLIST_RECORD_TYPE* a, global CELLIST_RECORD_TYPE* b) {
     global cellist_sort_piece* x = (global cellist_sort_piece*)a;
     global cellist_sort_piece* y = (global cellist_sort_piece*)b;
     for (uint i = 0; i < CELLIST_SORT_PIECES; ++i) {
@@ -91,7 +90,7 @@ static inline void cellist_sort_swap(global struct CELLIST_RECORD* a,
 }
 
 // Lets the record at `at` sink in the heap of `length` records: the last comes first.
-static inline void cellist_sort_sift(global struct CELLIST_RECORD* records, uint at, uint length,
+static inline void cellist_sort_sift(global CELLIST_RECORD_TYPE* records, uint at, uint length,
                                      const cellist_values values) {
     while (at < length / 2) {
         uint child = 2 * at + 1;
@@ -109,7 +108,7 @@ static inline void cellist_sort_cell(CELLIST_LISTS(CELLIST_RECORD, lists), uint 
     const cellist_view lists_view = cellist_view_of(lists);
     const uint length = cellist_sort_length(lists_heads, lists_view, cell);
     if (length < 2) return;
-    global struct CELLIST_RECORD* records =
+    global CELLIST_RECORD_TYPE* records =
         &cellist_get(lists, cellist_begin(lists_heads, lists_view, cell));
     for (uint i = length / 2; i > 0; --i) cellist_sort_sift(records, i - 1, length, values);
     for (uint end = length - 1; end > 0; --end) {

@@ -234,7 +234,7 @@ CELLIST_SORT_KERNEL cellist_sort_chunks(global const cellist_sort_long_list* lon
     }
     if (item == 0) sum = 0;
     for (uint i = item; i < length; i += CELLIST_SORT_ITEMS) {
-        global const struct CELLIST_RECORD* record = &cellist_sort_record(nodes[first + i]);
+        global const CELLIST_RECORD_TYPE* record = &cellist_sort_record(nodes[first + i]);
         keys[i] = cellist_sort_add_word(cellist_sort_key(record, values), record);
     }
     cellist_sort_barrier();

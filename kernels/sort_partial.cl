@@ -45,7 +45,7 @@ static inline void cellist_sort_take(CELLIST_LISTS(CELLIST_RECORD, lists), celli
 // Moves `count` records to the first nodes.
 static inline void cellist_sort_move(CELLIST_LISTS(CELLIST_RECORD, lists),
                                      const cellist_sort_top* top, uint count) {
-    struct CELLIST_RECORD records[CELLIST_SORT_TOP_K];
+    CELLIST_RECORD_TYPE records[CELLIST_SORT_TOP_K];
     // Bit i: the i-th node of the list keeps one of the first `count` records.
     ulong staying = 0;
     for (uint i = 0; i < count; ++i) {

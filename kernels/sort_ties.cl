@@ -27,7 +27,7 @@ static inline int cellist_sort_has_room(void) {
 }
 
 static inline cellist_sort_bits cellist_sort_add_word(cellist_sort_bits key,
-                                                      global const struct CELLIST_RECORD* record) {
+                                                      global const CELLIST_RECORD_TYPE* record) {
 #if CELLIST_SORT_KEY_BITS == 64
     if (cellist_sort_has_room()) return key << 32 | cellist_sort_word(record, 0);
 #endif

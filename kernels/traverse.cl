@@ -16,7 +16,7 @@ kernel void cellist_traverse(CELLIST_LISTS(CELLIST_RECORD, lists), uint most,
     cellist_for_each(lists, cell, node) {
         if (length == most) break;
         global const CELLIST_WORD* words = (global const CELLIST_WORD*)&cellist_get(lists, node);
-        for (uint i = 0; i < sizeof(struct CELLIST_RECORD) / sizeof(CELLIST_WORD); ++i)
+        for (uint i = 0; i < sizeof(CELLIST_RECORD_TYPE) / sizeof(CELLIST_WORD); ++i)
             sum += words[i];
         ++length;
     }

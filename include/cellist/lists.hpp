@@ -53,7 +53,8 @@ struct Element<M[count]> {
 
 }  // namespace detail
 
-/// A list of records T for each cell of a shape, in device memory.
+/// A list of records T for each cell of a shape, in device memory. T is an adapted struct, a scalar
+/// or a vector, e.g. `Lists<cl_uint>` for ids.
 ///
 /// Kernels fill the lists concurrently, with cellist_insert; kernels/cellist/lists.clh has every
 /// call that kernels may make. In Storage::linked, heads take 4 bytes per cell. A node takes the
@@ -79,7 +80,7 @@ struct Element<M[count]> {
 /// keep the records, unless the comment says otherwise.
 template <class T>
 class Lists {
-    static_assert(detail::Adapted<T>, "adapt the record with CELLIST_STRUCT first");
+    static_assert(detail::Record<T>, "adapt the record with CELLIST_STRUCT first");
 
 public:
     /// Makes empty lists. Throws MemoryError if the shape or the capacity exceeds a limit of the
@@ -87,8 +88,8 @@ public:
     /// names a member of another record.
     Lists(const Device& device, const Shape& shape, const ListsOptions& options = {})
         : core_("a Lists object",
-                std::make_shared<detail::ListsCore>(device.state(), detail::definitions_of<T>(),
-                                                    shape, options)) {}
+                std::make_shared<detail::ListsCore>(
+                    device.state(), detail::definitions_of_record<T>(), shape, options)) {}
     Lists(Lists&&) noexcept = default;
     Lists& operator=(Lists&&) noexcept = default;
     Lists(const Lists&) = delete;
@@ -219,9 +220,13 @@ public:
     /// the same nodes. Throws Error if offsets descend or leave the pool, or if the number of nodes
     /// differs from that of the last build. A sort without memory for more buffers checks nothing;
     /// validate() checks more. After any failure, sound lists keep their records.
-    template <class M>
-    cl::Event sort(M T::*member, Order order = Order::ascending) {
+    template <class M, std::same_as<T> R>
+    cl::Event sort(M R::*member, Order order = Order::ascending) {
         return core_->sort(key_of(member, order), all_nodes);
+    }
+    /// The same for records that are scalars.
+    cl::Event sort(Order order = Order::ascending) requires detail::Scalar<T> {
+        return core_->sort(key_of(order), all_nodes);
     }
 
     /// Sorts every list by an OpenCL C expression of `record` with an integer or float value, such
@@ -252,9 +257,13 @@ public:
     /// others follow in any order. Works as sort() if finding these nodes does not pay. It pays for
     /// a `count` of up to 64 records, 4 KiB in all, if lists have a mean length of at least 512
     /// nodes on GPUs, or `8 * count` on CPUs.
-    template <class M>
-    cl::Event partial_sort(M T::*member, std::uint32_t count, Order order = Order::ascending) {
+    template <class M, std::same_as<T> R>
+    cl::Event partial_sort(M R::*member, std::uint32_t count, Order order = Order::ascending) {
         return core_->sort(key_of(member, order), count);
+    }
+    cl::Event partial_sort(std::uint32_t count,
+                           Order order = Order::ascending) requires detail::Scalar<T> {
+        return core_->sort(key_of(order), count);
     }
     cl::Event partial_sort_by(const std::string& expression, std::uint32_t count,
                               Order order = Order::ascending) {
@@ -268,9 +277,12 @@ public:
     /// Sorts without blocking and without a second pool. One work-item sorts each list in place,
     /// which takes longer for most lists. Throws what sort_by() throws for an expression. Requires
     /// sound lists: if links lead in circles, the sort ends, but the lists have undefined content.
-    template <class M>
-    cl::Event sort_async(M T::*member, Order order = Order::ascending) {
+    template <class M, std::same_as<T> R>
+    cl::Event sort_async(M R::*member, Order order = Order::ascending) {
         return core_->sort_async(key_of(member, order));
+    }
+    cl::Event sort_async(Order order = Order::ascending) requires detail::Scalar<T> {
+        return core_->sort_async(key_of(order));
     }
     cl::Event sort_by_async(const std::string& expression, Order order = Order::ascending) {
         return sort_by_async(expression, {}, order);
@@ -349,13 +361,13 @@ public:
     /// Copies all lists to plain device buffers, as contiguous lists, for kernels that do not use
     /// the container. Blocks only for a pending build that may still change the lists. While a
     /// build under Overflow::drop is pending, the copy has room for capacity_nodes() records.
-    [[nodiscard]] Packed<T> pack() const { return pack<T, T>(""); }
+    [[nodiscard]] Packed<T> pack() const { return pack_values<T, T>(""); }
     /// Like pack(), for readers that need only one member. Its type may be a scalar, a vector, an
     /// adapted struct or an array; `cl_float[4]` gives `Packed<std::array<cl_float, 4>>`.
-    template <class M>
-    [[nodiscard]] Packed<typename detail::Element<M>::type> pack(M T::*member) const {
-        return pack<M, typename detail::Element<M>::type>(std::string(".") +
-                                                          detail::member_name(member));
+    template <class M, std::same_as<T> R>
+    [[nodiscard]] Packed<typename detail::Element<M>::type> pack(M R::*member) const {
+        return pack_values<M, typename detail::Element<M>::type>(std::string(".") +
+                                                                 detail::member_name(member));
     }
 
     /// Finds the neighbours of every record: the other records up to a distance, in the cells around
@@ -375,7 +387,8 @@ public:
         detail::find_neighbours(*core_, options, "", reuse);
         return reuse;
     }
-    [[nodiscard]] Neighbours neighbours(cl_uint T::*index, const NeighbourOptions& options,
+    template <std::same_as<T> R>
+    [[nodiscard]] Neighbours neighbours(cl_uint R::*index, const NeighbourOptions& options,
                                         Neighbours reuse = {}) const {
         detail::find_neighbours(*core_, options, detail::member_name(index), reuse);
         return reuse;
@@ -472,8 +485,8 @@ private:
 
     static constexpr std::uint32_t all_nodes = std::numeric_limits<std::uint32_t>::max();
 
-    template <class M>
-    static detail::SortKey key_of(M T::*member, Order order) {
+    template <class M, class R>
+    static detail::SortKey key_of(M R::*member, Order order) {
         static_assert(detail::Scalar<M>,
                       "records are ordered by a scalar member, or by an expression");
         return {std::string("record.") + detail::member_name(member),
@@ -481,10 +494,13 @@ private:
                 order,
                 {}};
     }
+    static detail::SortKey key_of(Order order) {
+        return {"record", sizeof(T) <= 4 ? 32u : 64u, order, {}};
+    }
 
     /// Packs the value of type M that `member` selects from each record.
     template <class M, class E>
-    Packed<E> pack(const std::string& member) const {
+    Packed<E> pack_values(const std::string& member) const {
         static_assert(detail::KnownOnDevice<M> && sizeof(E) == sizeof(M));
         Packed<E> packed{{core_->device(), shape().cells() + 1}, {core_->device(), 0}};
         const auto allocate = [&](std::uint64_t count) -> const cl::Buffer& {

@@ -98,6 +98,11 @@ template <class T, class M>
     static_assert(detail::Scalar<M>, "the nearest records are found by a scalar member");
     return StorageOption({detail::description<T>.name, detail::member_name(member), slots});
 }
+/// The same for records that are scalars, e.g. `nearest<cl_float>(8)`.
+template <detail::Scalar T>
+[[nodiscard]] StorageOption nearest(std::uint32_t slots) {
+    return StorageOption({detail::scalar_name<T>(), "", slots});
+}
 
 /// The options of a container. The defaults are linked lists in a pool that grows.
 struct ListsOptions {

@@ -79,7 +79,7 @@ namespace cellist {
 template <class T>
 struct DeviceType;
 
-/// Names an adapted struct that a kernel uses without a container:
+/// Names a type of records that a kernel uses without a container:
 /// `Kernel(device, source, "draw", fragments, cellist::type<Camera>)`.
 template <class T>
 struct Type {};
@@ -230,7 +230,7 @@ struct DeviceType<T> {
     static constexpr std::size_t alignment = alignof(T);
     static std::string name() { return detail::description<T>.name; }
     static void define(detail::Definitions& definitions) {
-        detail::RecordType record{name(), size, alignment, {}};
+        detail::RecordType record{name(), size, alignment, {}, true};
         std::apply([&](const auto&... member) { (add_member(member, record, definitions), ...); },
                    detail::description<T>.members);
         definitions.add(record);
@@ -254,7 +254,7 @@ private:
         detail::RecordMember out{member.name, OnDevice::name(), {}, member.offset, {}, false};
         if constexpr (std::is_array_v<M>) out.extents = OnDevice::extents();
         if constexpr (detail::Scalar<M>) out.is_scalar = true;
-        OnDevice::add_scalars(member.name, out.scalars);
+        OnDevice::add_scalars(std::string(".") + member.name, out.scalars);
         record.members.push_back(std::move(out));
     }
 };
@@ -309,6 +309,23 @@ template <class T>
 Definitions definitions_of() {
     Definitions definitions;
     DeviceType<T>::define(definitions);
+    return definitions;
+}
+
+/// A type of records: any type that kernels know, except arrays.
+template <class T>
+concept Record = KnownOnDevice<T> && !std::is_array_v<T>;
+
+/// The definitions that a program needs to use lists of T.
+template <Record T>
+Definitions definitions_of_record() {
+    Definitions definitions = definitions_of<T>();
+    if constexpr (!Adapted<T>) {
+        using OnDevice = DeviceType<T>;
+        RecordMember value{"", OnDevice::name(), {}, 0, {}, Scalar<T>};
+        OnDevice::add_scalars("", value.scalars);
+        definitions.add({OnDevice::name(), OnDevice::size, OnDevice::alignment, {value}, false});
+    }
     return definitions;
 }
 

@@ -18,7 +18,7 @@ void ContiguousLists::update(const ListsCore& lists) {
             reserve(records_, lists.device(), count, record.size, "copy of the lists");
             return records_.cl();
         },
-        "struct " + record.name + " value", "");
+        record.type() + " value", "");
 }
 
 void ContiguousLists::add_to(Arguments& arguments, const ListsCore& lists) const {

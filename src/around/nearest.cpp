@@ -62,8 +62,8 @@ void find_nearest(const ListsCore& lists, const NearestOptions& options,
                           .subjects = {query_subjects()[1]}},
                          {.expression = options.distance,
                           .what = "distance expression",
-                          .head = "static inline float cellist_distance(const struct " +
-                                  kernels.record().name + "* cellist_record, " + query,
+                          .head = "static inline float cellist_distance(const " +
+                                  kernels.record().type() + "* cellist_record, " + query,
                           .before = "(float)",
                           .subjects = query_subjects()}});
     program.types.add(search.types);

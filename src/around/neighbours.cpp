@@ -51,7 +51,7 @@ SearchProgram program_of(const RecordKernels& kernels, const NeighbourOptions& o
     check_expression(options.distance);
     check_values(options.values, subjects);
     const RecordType& record = kernels.record();
-    const std::string type = "const struct " + record.name + "*";
+    const std::string type = "const " + record.type() + "*";
     SearchProgram program{
         .expressions = expression_program(
             options.values, {{.expression = options.distance,

@@ -139,7 +139,7 @@ detail::Program compile(detail::DeviceState& device, const Source& source,
                         const detail::Definitions& definitions, cl_uint modes) {
     if (source.text.empty()) throw Error("the source of " + source.file_name + " is empty");
     if (definitions.needs_fp64 && !device.info.fp64)
-        throw Error("a struct has members of type double, which " + device.info.name +
+        throw Error("a record holds values of type double, which " + device.info.name +
                     " does not support");
     const ProgramText whole = whole_source(source, definitions, modes, device.info);
     try {

@@ -19,7 +19,7 @@ using Kind = Parameter::Kind;
 std::size_t type_size(std::string name, const Definitions& definitions) {
     if (name.find("cellist_view_") != std::string::npos) return sizeof(cellist_view);
     for (const RecordType& record : definitions.records)
-        if (record.name == name || "struct " + record.name == name) return record.size;
+        if (record.name == name || record.type() == name) return record.size;
     if (name.starts_with("unsigned ")) name.replace(0, 9, "u");
     static const std::map<std::string, std::size_t> scalars{
         {"char", 1}, {"uchar", 1}, {"short", 2}, {"ushort", 2}, {"half", 2},  {"int", 4},
@@ -55,7 +55,7 @@ std::string pointed_to(std::string type) {
 std::string comparable(const std::string& type, const Definitions& definitions) {
     if (type.empty()) return {};
     for (const RecordType& record : definitions.records)
-        if (record.name == type) return type;
+        if (record.is_struct && record.name == type) return type;
     const std::string scalar = type.substr(0, type.find_first_of("0123456789"));
     const std::size_t size = type_size(scalar, definitions);
     if (size == 0) return {};

@@ -270,7 +270,7 @@ std::string with_hints(std::string log, const std::function<bool(const std::stri
     const std::string key = name_after("cellist_key_", log);
     if (!record.empty())
         log += "\nhint: name a Lists<" + record + "> or cellist::type<" + record +
-               "> in the constructor of the Kernel, so that it knows the struct";
+               "> in the constructor of the Kernel, so that it knows the type";
     if (log.find("ptxas") != std::string::npos && log.find("near '}'") != std::string::npos)
         log += "\nhint: NVIDIA's compiler fails at kernels without parameters; give each one";
     if (log.find("'cellist_order'") != std::string::npos)

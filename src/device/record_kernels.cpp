@@ -12,7 +12,8 @@ Kernel& RecordKernels::get(std::initializer_list<KernelFile> files, const char* 
                            const std::string& definitions, const Definitions& types) {
     const std::tuple id(std::string(name), mode, definitions + types.source());
     if (Kernel* known = kernels_.find(id)) return *known;
-    std::string text = "#define CELLIST_RECORD " + record().name + "\n" + definitions;
+    std::string text = "#define CELLIST_RECORD " + record().name +
+                       "\n#define CELLIST_RECORD_TYPE " + record().type() + "\n" + definitions;
     for (const KernelFile& file : files)
         text += std::string("#line 1 \"") + file.name + "\"\n" + std::string(file.text);
     // The record stays the last one of its own definitions.

@@ -21,14 +21,15 @@ bool same_layout(const RecordType& a, const RecordType& b) {
                       });
 }
 
-/// The end of a line that only exists because of a struct, or of one of its members: says so where
+/// The end of a line that only exists because of a record, or of one of its members: says so where
 /// the compiler complains.
-std::string because_of(const RecordType& record) { return "  // struct " + record.name + "\n"; }
+std::string because_of(const RecordType& record) { return "  // " + record.type() + "\n"; }
 std::string because_of(const RecordType& record, const RecordMember& member) {
-    return "  // member " + member.name + " of struct " + record.name + "\n";
+    return "  // member " + member.name + " of " + record.type() + "\n";
 }
 
 std::string struct_definition(const RecordType& record) {
+    if (!record.is_struct) return {};
     std::string text = "typedef struct " + record.name + " {" + because_of(record);
     for (const RecordMember& member : record.members)
         text += "    " + member.type + " " + member.name + member.extents + ";" +
@@ -38,17 +39,17 @@ std::string struct_definition(const RecordType& record) {
 
 /// Arrays of negative size where the device's compiler disagrees with the host's.
 std::string layout_checks(const RecordType& record) {
-    const std::string type = "struct " + record.name;
     const auto check = [&](std::size_t number, const std::string& value, std::size_t expected) {
         return "typedef char cellist_layout_of_" + record.name + "_" + std::to_string(number) +
                "[(" + value + " == " + std::to_string(expected) + ") ? 1 : -1];";
     };
-    std::string text = check(0, "sizeof(" + type + ")", record.size) + because_of(record);
+    std::string text = check(0, "sizeof(" + record.type() + ")", record.size) + because_of(record);
+    if (!record.is_struct) return text;
     for (std::size_t i = 0; i < record.members.size(); ++i) {
         const RecordMember& member = record.members[i];
-        text +=
-            check(i + 1, "__builtin_offsetof(" + type + ", " + member.name + ")", member.offset) +
-            because_of(record, member);
+        text += check(i + 1, "__builtin_offsetof(" + record.type() + ", " + member.name + ")",
+                      member.offset) +
+                because_of(record, member);
     }
     return text;
 }
@@ -56,12 +57,12 @@ std::string layout_checks(const RecordType& record) {
 /// Elements of arrays that are compared one by one: longer arrays take a loop, and compile as fast.
 constexpr std::size_t unrolled_max = 16;
 
-/// The scalars of each element of a member that is an array, after "name[i]"; none of other
+/// The scalars of each element of a member that is an array, after ".name[i]"; none of other
 /// members.
 std::vector<std::string> element_scalars(const RecordMember& member, std::size_t& elements) {
     elements = member.extents.empty() ? 0 : std::stoul(member.extents.substr(1));
     if (elements <= unrolled_max) return {};
-    const std::size_t first = member.name.size() + std::string_view("[0]").size();
+    const std::size_t first = member.name.size() + std::string_view(".[0]").size();
     std::vector<std::string> parts;
     for (std::size_t i = 0; i < member.scalars.size() / elements; ++i)
         parts.push_back(member.scalars[i].substr(first));
@@ -71,18 +72,17 @@ std::vector<std::string> element_scalars(const RecordMember& member, std::size_t
 /// Whether record a comes before record b: by the member that `key` means, then by all members. One
 /// function takes records, the other pointers to records of any size that stay where they are.
 std::string order_definition(const RecordType& record) {
-    const auto define = [&](const std::string& type, const std::string& access) {
+    const auto define = [&](const std::string& type, const std::string& a, const std::string& b) {
         const auto compare = [&](const std::string& path) {
-            return "x = cellist_order(a" + access + path + "), y = cellist_order(b" + access +
-                   path + ");";
+            return "x = cellist_order(" + a + path + "), y = cellist_order(" + b + path + ");";
         };
         std::string text = "static inline int CELLIST_OVERLOAD cellist_record_before(" + type +
                            " a, " + type +
                            " b, uint key)\n{\n    ulong x = 0, y = 0;\n    switch (key) {\n";
         for (const RecordMember& member : record.members)
-            if (member.is_scalar)
-                text += "    case cellist_key_" + member.name + ": " + compare(member.name) +
-                        " break;" + because_of(record, member);
+            if (member.is_scalar && record.is_struct)
+                text += "    case cellist_key_" + member.name + ": " +
+                        compare(member.scalars.front()) + " break;" + because_of(record, member);
         text += "    default: break;\n    }\n    if (x != y) return x < y;\n";
         for (const RecordMember& member : record.members) {
             std::size_t elements = 0;
@@ -90,8 +90,8 @@ std::string order_definition(const RecordType& record) {
             if (!parts.empty())
                 text += "    for (uint i = 0; i < " + std::to_string(elements) + "u; ++i) {\n";
             for (const std::string& part : parts)
-                text += "    " + compare(member.name + "[i]" + part) + because_of(record, member) +
-                        "    if (x != y) return x < y;\n";
+                text += "    " + compare("." + member.name + "[i]" + part) +
+                        because_of(record, member) + "    if (x != y) return x < y;\n";
             if (!parts.empty()) {
                 text += "    }\n";
                 continue;
@@ -102,8 +102,8 @@ std::string order_definition(const RecordType& record) {
         }
         return text + "    return 0;\n}\n";
     };
-    return define("struct " + record.name, ".") +
-           define("global const struct " + record.name + "*", "->");
+    return define(record.type(), "a", "b") +
+           define("global const " + record.type() + "*", "(*a)", "(*b)");
 }
 
 /// The words of a record's key for nearest.clh, and their number: those of a member, then those of
@@ -112,19 +112,19 @@ std::string words_definition(const RecordType& record) {
     std::string members = "    switch (member) {\n";
     std::string lengths = members;
     const auto word_of = [](const std::string& path) {
-        const std::string words = "cellist_words_of(record." + path + ")";
-        return "if (word < " + words + ") return cellist_word_of(record." + path +
+        const std::string words = "cellist_words_of(record" + path + ")";
+        return "if (word < " + words + ") return cellist_word_of(record" + path +
                ", word); word -= " + words + ";";
     };
     const auto add_words_of = [](const std::string& path) {
-        return "words += cellist_words_of(record->" + path + ");";
+        return "words += cellist_words_of((*record)" + path + ");";
     };
     for (std::size_t i = 0; i < record.members.size(); ++i) {
         const RecordMember& member = record.members[i];
         if (!member.is_scalar) continue;
         const std::string begin = "    case " + std::to_string(i) + ": ";
-        members += begin + word_of(member.name) + " break;\n";
-        lengths += begin + add_words_of(member.name) + " break;\n";
+        members += begin + word_of(member.scalars.front()) + " break;\n";
+        lengths += begin + add_words_of(member.scalars.front()) + " break;\n";
     }
     members += "    default: break;\n    }\n";
     lengths += "    default: break;\n    }\n";
@@ -139,9 +139,9 @@ std::string words_definition(const RecordType& record) {
         }
         if (member.is_scalar) members += "    }\n", lengths += "    }\n";
     }
-    return "static inline uint CELLIST_OVERLOAD cellist_record_word(struct " + record.name +
+    return "static inline uint CELLIST_OVERLOAD cellist_record_word(" + record.type() +
            " record, uint member, uint word)\n{\n" + members + "    return 0;\n}\n" +
-           "static inline uint CELLIST_OVERLOAD cellist_record_words(struct " + record.name +
+           "static inline uint CELLIST_OVERLOAD cellist_record_words(" + record.type() +
            "* record, uint member)\n{\n    uint words = 0;\n" + lengths + "    return words;\n}\n";
 }
 
@@ -181,11 +181,12 @@ std::string Definitions::source() const {
     std::map<std::string, std::size_t> keys;
     for (const RecordType& record : records)
         for (const RecordMember& member : record.members)
-            if (member.is_scalar) keys.emplace(member.name, keys.size() + 1);
+            if (member.is_scalar && record.is_struct) keys.emplace(member.name, keys.size() + 1);
     for (const auto& [name, number] : keys)
         text += "#define cellist_key_" + name + " " + std::to_string(number) + "u\n";
 
     for (const RecordType& record : records) {
+        text += "#define cellist_type_" + record.name + " " + record.type() + "\n";
         text += record.definition() + order_definition(record);
         text += "#if CELLIST_MODES & (CELLIST_THRESHOLD_PASS | CELLIST_SELECTION_PASS)\n" +
                 words_definition(record) + "#endif\n";

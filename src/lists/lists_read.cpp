@@ -18,7 +18,7 @@ namespace {
 
 /// The declaration of a whole record, as gather.cl takes it.
 std::string record_declaration(const RecordKernels& kernels) {
-    return "struct " + kernels.record().name + " value";
+    return kernels.record().type() + " value";
 }
 
 /// Work-items that gather values together, on GPUs.

@@ -26,7 +26,7 @@ void check_key(const SortKey& key) {
 
 ExpressionProgram key_program(const SortKey& key) {
     const std::string type = key.bits == 32 ? "uint" : "ulong";
-    const std::string pointer = "global const struct CELLIST_RECORD* cellist_sort_at";
+    const std::string pointer = "global const CELLIST_RECORD_TYPE* cellist_sort_at";
     return expression_program(
         key.values, {{.expression = key.expression,
                       .what = "sort expression",
@@ -45,14 +45,14 @@ ExpressionProgram key_program(const SortKey& key) {
 std::string tie_function(const SortKey& key, const RecordType& record) {
     constexpr std::size_t scalars_max = 8;
     std::string text =
-        "static inline uint cellist_sort_word(global const struct CELLIST_RECORD* record, "
+        "static inline uint cellist_sort_word(global const CELLIST_RECORD_TYPE* record, "
         "uint word) {\n";
     std::size_t scalars = 0;
     for (const RecordMember& member : record.members) {
-        if (key.expression == "record." + member.name) continue;
+        if (member.is_scalar && key.expression == "record" + member.scalars.front()) continue;
         for (const std::string& path : member.scalars) {
             if (scalars++ == scalars_max) break;
-            const std::string scalar = "record->" + path;
+            const std::string scalar = "(*record)" + path;
             const std::string words = "cellist_words_of(" + scalar + ")";
             text += "if (word < " + words + ") return cellist_word_of(" + scalar +
                     ", word);\nword -= " + words + ";\n";
@@ -63,6 +63,7 @@ std::string tie_function(const SortKey& key, const RecordType& record) {
 
 bool is_member(const SortKey& key) {
     constexpr std::string_view prefix = "record.";
+    if (key.expression == "record") return true;
     return key.expression.starts_with(prefix) &&
            std::all_of(key.expression.begin() + prefix.size(), key.expression.end(), in_name);
 }

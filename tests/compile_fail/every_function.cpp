@@ -122,6 +122,13 @@ std::size_t use(const cellist::Device& device) {
         hits.nearest(numbers, {.k = 3, .position = "query", .distance = "record.depth"});
     first = hits.nearest(records, {.position = "query.grid[0][0]", .distance = "query.depth"},
                          std::move(first));
+    Lists<cl_uint> ids(device, {4}, {.storage = nearest<cl_uint>(3)});
+    Kernel add(device, "kernel void f(CELLIST_LISTS(uint, ids)) {}", "f", ids, type<cl_float4>);
+    sum += ids.build(add, 7).stored + ids.download().cell(0).size() + ids.pack().records.size();
+    ids.sort();
+    ids.sort(Order::descending);
+    ids.partial_sort(3);
+    ids.sort_async();
     sum += near.pairs + near.indices.size() + first.records.size();
     sum += hits.validate().ok() && hits.validate_async().get().ok() ? 1U : 0U;
     hits.clear();

@@ -76,7 +76,7 @@ struct Entries {
 Entries compare(const Triangles& triangles, const grid::GridCells& cells) {
     grid::TriangleGrid grid(device(), triangles, cells);
     grid.build();
-    const HostLists<grid::GridEntry> lists = grid.entries().download();
+    const HostLists<cl_uint> lists = grid.entries().download();
     const glm::ivec3 extent(cells.extent[0], cells.extent[1], cells.extent[2]);
     const glm::ivec3 bricks = (extent + 3) / 4;
     std::vector<Corners> corners;
@@ -91,7 +91,7 @@ Entries compare(const Triangles& triangles, const grid::GridCells& cells) {
                 const auto list = lists.cell(
                     static_cast<std::uint64_t>(brick * 64 + x % 4 + y % 4 * 4 + z % 4 * 16));
                 std::vector<bool> is_listed(triangles.size());
-                for (const grid::GridEntry& entry : list) is_listed[entry.triangle] = true;
+                for (const cl_uint triangle : list) is_listed[triangle] = true;
                 for (std::size_t i = 0; i < triangles.size(); ++i) {
                     const bool is_needed = touches(corners[i], glm::dvec3(x, y, z));
                     if (is_needed && !is_listed[i]) ++entries.missing;

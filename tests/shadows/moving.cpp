@@ -29,8 +29,8 @@ std::vector<std::vector<cl_uint>> sorted_lists(const grid::TriangleGrid& grid) {
     const auto lists = grid.entries().download();
     std::vector<std::vector<cl_uint>> result;
     for (std::size_t cell = 0; cell < grid.entries().shape().cells(); ++cell) {
-        std::vector<cl_uint>& list = result.emplace_back();
-        for (const grid::GridEntry entry : lists[{cell}]) list.push_back(entry.triangle);
+        const auto found = lists.cell(cell);
+        std::vector<cl_uint>& list = result.emplace_back(found.begin(), found.end());
         std::sort(list.begin(), list.end());
     }
     return result;

@@ -127,10 +127,9 @@ static uint grid_columns(const GridOverlap* t) {
 }
 
 // Inserts a triangle into its cells in columns begin, begin + step, ... before `end`.
-static void grid_insert_columns(CELLIST_LISTS(GridEntry, entries), const GridCells cells,
+static void grid_insert_columns(CELLIST_LISTS(uint, entries), const GridCells cells,
                                 const GridOverlap* t, uint number, uint begin, uint end,
                                 uint step) {
-    const GridEntry entry = {number};
     const int3 bricks = grid_bricks(cells);
     for (uint column = begin; column < end; column += step) {
         const int y = (int)(column % (uint)(t->last.y + 1));
@@ -143,7 +142,7 @@ static void grid_insert_columns(CELLIST_LISTS(GridEntry, entries), const GridCel
             const uint list =
                 (uint)((brick.z * bricks.y + brick.y) * bricks.x + brick.x) * GRID_BRICK_CELLS +
                 (uint)(within.x | within.y << 2 | within.z << 4);
-            cellist_insert(entries, list, entry);
+            cellist_insert(entries, list, number);
         }
     }
 }
@@ -153,7 +152,7 @@ static void grid_insert_columns(CELLIST_LISTS(GridEntry, entries), const GridCel
 //
 // corners      three a triangle, in units of the grid; NaN beyond GRID_CORNER_MAX
 // part_count   0 before; may exceed `part_room` afterwards
-kernel void grid_insert(CELLIST_LISTS(GridEntry, entries), const GridCells cells,
+kernel void grid_insert(CELLIST_LISTS(uint, entries), const GridCells cells,
                         global const GridTriangle* triangles, uint count, global float4* corners,
                         global GridPart* parts, uint part_room, volatile global uint* part_count) {
     const uint i = get_global_id(0);
@@ -166,15 +165,14 @@ kernel void grid_insert(CELLIST_LISTS(GridEntry, entries), const GridCells cells
         const int is_close = all(fabs(points[k]) <= GRID_CORNER_MAX);
         corners[3 * i + k] = (float4)(is_close ? points[k] : (float3)(NAN), 0.0f);
     }
-    const GridEntry entry = {i};
     if (!all(isfinite(a)) || !all(isfinite(b)) || !all(isfinite(c))) {
-        cellist_insert(entries, CELLIST_NONE, entry);
+        cellist_insert(entries, CELLIST_NONE, i);
         return;
     }
     GridOverlap overlap;
     int reaches_out;
     const int is_near = grid_overlap_begin(&overlap, cells, a, b, c, &reaches_out);
-    if (reaches_out) cellist_insert(entries, grid_outside(cells), entry);
+    if (reaches_out) cellist_insert(entries, grid_outside(cells), i);
     if (!is_near) return;
     const uint columns = grid_columns(&overlap);
     const uint needed = min((columns - 1) / GRID_COLUMNS_PER_PART + 1, GRID_PARTS_MAX);
@@ -192,7 +190,7 @@ kernel void grid_insert(CELLIST_LISTS(GridEntry, entries), const GridCells cells
 }
 
 // One work-group a part, of any number of work-groups.
-kernel void grid_insert_parts(CELLIST_LISTS(GridEntry, entries), const GridCells cells,
+kernel void grid_insert_parts(CELLIST_LISTS(uint, entries), const GridCells cells,
                               global const GridTriangle* triangles, global const GridPart* parts,
                               uint part_room, global const uint* part_count) {
     const uint count = min(*part_count, part_room);
@@ -213,8 +211,7 @@ kernel void grid_insert_parts(CELLIST_LISTS(GridEntry, entries), const GridCells
 }
 
 // One work-item a brick: which of its cells have a list. See walk.clh.
-kernel void grid_find_occupied(CELLIST_LISTS(GridEntry, entries), uint bricks,
-                               global ulong* occupancy) {
+kernel void grid_find_occupied(CELLIST_LISTS(uint, entries), uint bricks, global ulong* occupancy) {
     const uint brick = get_global_id(0);
     if (brick >= bricks) return;
     ulong occupied = 0;

@@ -18,12 +18,6 @@ struct GridTriangle {
 };
 CELLIST_STRUCT(GridTriangle, a, b, c);
 
-/// A triangle in the list of a cell.
-struct GridEntry {
-    cl_uint triangle;
-};
-CELLIST_STRUCT(GridEntry, triangle);
-
 /// The cells of a grid: cubes of the same size. Coordinates are multiplied by `unit` first, so that
 /// very large and very small meshes stay in the range of floats.
 struct GridCells {
@@ -84,7 +78,7 @@ public:
 
     /// Device memory of the grid and the triangles.
     [[nodiscard]] std::uint64_t device_bytes() const;
-    [[nodiscard]] const cellist::Lists<GridEntry>& entries() const { return entries_; }
+    [[nodiscard]] const cellist::Lists<cl_uint>& entries() const { return entries_; }
     [[nodiscard]] const GridCells& cells() const { return cells_; }
     [[nodiscard]] const cellist::Buffer<GridTriangle>& triangles() const { return triangles_; }
 
@@ -99,7 +93,7 @@ private:
     cellist::Range parts_range_;
     cellist::Buffer<GridPart> parts_;
     cellist::Buffer<cl_uint> part_count_;
-    cellist::Lists<GridEntry> entries_;
+    cellist::Lists<cl_uint> entries_;
     cellist::Kernel insert_;
     cellist::Kernel insert_parts_;
     cellist::Kernel find_occupied_;

@@ -158,13 +158,13 @@ private:
 
 template <class T>
 Definitions definitions_used(const Lists<T>& lists) {
-    Definitions definitions = definitions_of<T>();
+    Definitions definitions = definitions_of_record<T>();
     definitions.modes = read_mode(lists.core());
     return definitions;
 }
 template <class T>
 Definitions definitions_used(const Type<T>&) {
-    return definitions_of<T>();
+    return definitions_of_record<T>();
 }
 template <Container C>
 Definitions definitions_used(const C& container) {

@@ -11,21 +11,24 @@ namespace cellist::detail {
 
 /// A member of an adapted struct, as OpenCL C sees it.
 struct RecordMember {
-    std::string name;
+    std::string name;                  ///< empty for a record that is no struct
     std::string type;                  ///< e.g. "float4"
     std::string extents;               ///< e.g. "[4][2]" for an array
     std::size_t offset = 0;            ///< on the host, in bytes
-    std::vector<std::string> scalars;  ///< paths of its scalars, in order, e.g. "position.s0"
+    std::vector<std::string> scalars;  ///< paths of its scalars, in order, e.g. ".position.s0"
     bool is_scalar = false;            ///< may serve as a key
 };
 
-/// An adapted struct, as OpenCL C sees it.
+/// A type of records, as OpenCL C sees it: an adapted struct, or a type with one nameless member.
 struct CELLIST_API RecordType {
     std::string name;
     std::size_t size = 0;
     std::size_t alignment = 1;
     std::vector<RecordMember> members;
+    bool is_struct = true;
 
+    /// The type in OpenCL C, e.g. "struct Hit" or "uint".
+    [[nodiscard]] std::string type() const { return (is_struct ? "struct " : "") + name; }
     /// The OpenCL C source that defines the struct and checks its layout.
     [[nodiscard]] std::string definition() const;
 };
