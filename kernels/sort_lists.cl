@@ -111,10 +111,8 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
             if (member == 0)
                 heads[CELLIST_SORT_CELL(list)] = length > 0 ? base + firsts[list] : CELLIST_NONE;
         }
-        for (uint i = member; i < length; i += CELLIST_SORT_TEAM)
-            keys[row + i] =
-                cellist_sort_key(&cellist_sort_record(own_nodes[index[row + i]]), values);
 #define CELLIST_SORT_OWN own_nodes, CELLIST_NONE, index + row
+#define CELLIST_SORT_OWN_NODE(i) index[row + (i)]
 #else
         uint first = 0;
         if (list < own) {
@@ -129,10 +127,15 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
             if (member == 0 && is_broken) atomic_inc(&state->broken);
             if (member == 0 && length > 0) cellist_sort_add(&total, length);
         }
-        for (uint i = member; i < length; i += CELLIST_SORT_TEAM)
-            keys[row + i] = cellist_sort_key(&cellist_sort_record(own_nodes[first + i]), values);
 #define CELLIST_SORT_OWN own_nodes, first, 0
+#define CELLIST_SORT_OWN_NODE(i) first + (i)
 #endif
+        for (uint i = member; i < length; i += CELLIST_SORT_TEAM) {
+            global const CELLIST_RECORD_TYPE* record =
+                &cellist_sort_record(own_nodes[CELLIST_SORT_OWN_NODE(i)]);
+            const cellist_sort_bits key = cellist_sort_key(record, values);
+            keys[row + i] = expects_ties ? cellist_sort_add_word(key, record) : key;
+        }
         cellist_sort_barrier();
         uint ranks[CELLIST_SORT_RUNS * CELLIST_SORT_WIDTH];
         if (length > 0 && !expects_ties)
@@ -146,7 +149,7 @@ CELLIST_SORT_KERNEL cellist_sort_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
         if (unique) {
             cellist_sort_order(ranks, length, member, order + row);
         } else {
-            cellist_sort_add_first_word(CELLIST_SORT_OWN, keys + row, length);
+            if (!expects_ties) cellist_sort_add_first_word(CELLIST_SORT_OWN, keys + row, length);
             cellist_sort_order_equal(CELLIST_SORT_OWN, keys + row, length, member, &ties, ranks,
                                      order + row);
         }

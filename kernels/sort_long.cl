@@ -210,6 +210,18 @@ kernel void cellist_sort_gather(CELLIST_LISTS(CELLIST_RECORD, lists), global con
     cellist_sort_key(&cellist_sort_record((nodes)[i]), values)
 #endif
 
+// The key by which a merge orders node i: on CPUs with a word of the record, where there is room, so
+// that few comparisons branch.
+#if CELLIST_SORT_ITEMS == 1 && CELLIST_SORT_KEY_BITS == 32
+typedef ulong cellist_sort_merge_bits;
+#define cellist_sort_merge_key(nodes, keys, i)                                                     \
+    ((ulong)cellist_sort_key_of(nodes, keys, i) << 32 |                                            \
+     cellist_sort_word(&cellist_sort_record((nodes)[i]), 0))
+#else
+typedef cellist_sort_bits cellist_sort_merge_bits;
+#define cellist_sort_merge_key(nodes, keys, i) cellist_sort_key_of(nodes, keys, i)
+#endif
+
 // Sorts each chunk; CELLIST_SORT_ITEMS work-items a chunk.
 CELLIST_SORT_KERNEL cellist_sort_chunks(global const cellist_sort_long_list* long_lists,
                                         global const uint* chunk_owners, uint chunks,
@@ -315,12 +327,12 @@ kernel void cellist_sort_merge_runs(global const cellist_sort_long_list* long_li
         while (at < stop && a < a_end && b < b_end) {
             const uint last = at + min(stop - at, min(a_end - a, b_end - b));
             for (; at < last; ++at) {
-                const cellist_sort_bits x = cellist_sort_key_of(from, keys_from, a);
-                const cellist_sort_bits y = cellist_sort_key_of(from, keys_from, b);
+                const cellist_sort_merge_bits x = cellist_sort_merge_key(from, keys_from, a);
+                const cellist_sort_merge_bits y = cellist_sort_merge_key(from, keys_from, b);
                 uint b_first = y < x;
                 if (x == y)
-                    b_first = cellist_sort_before(&cellist_sort_record(from[b]), y,
-                                                  &cellist_sort_record(from[a]), x);
+                    b_first = cellist_record_before(&cellist_sort_record(from[b]),
+                                                    &cellist_sort_record(from[a]), 0);
                 cellist_sort_store(to, list.first + at, list.first + list.length - 1,
                                    &from[a + ((b - a) & (0 - b_first))]);
 #if CELLIST_SORT_KEEPS_KEYS

@@ -176,9 +176,11 @@ static uint cellist_sort_first_difference(global const cellist_sort_node* nodes,
 #if CELLIST_SORT_KEY_BITS == 64
     // The keys have the first word: this loop does not branch.
     if (cellist_sort_has_room() && most > 0) {
+        ulong sorted[CELLIST_SORT_CHUNK_SIZE];
+        for (uint i = 0; i < length; ++i) sorted[i] = keys[order[i]];
         uint differs = 0;
         for (uint i = 1; i < length; ++i) {
-            const ulong difference = keys[order[i - 1]] ^ keys[order[i]];
+            const ulong difference = sorted[i - 1] ^ sorted[i];
             differs |= (difference >> 32 == 0) & (difference != 0);
         }
         if (differs) return 0;
