@@ -58,17 +58,14 @@ kernel void cellist_gather(CELLIST_LISTS(CELLIST_RECORD, lists), uint begin, uin
                            global const uint* offsets, global cellist_gathered* values) {
     const uint start = offsets[begin];
     cellist_reader reader = cellist_reader_of(begin, end);
-    while (cellist_refill(&reader, lists_heads)) {
-        for (uint i = 0; i < reader.open; ++i) {
-            const uint node = reader.node[i];
-            const uint at = offsets[reader.cell[i]] + reader.read[i];
-            if (node < cellist_view_of(lists).pool_nodes && at < offsets[reader.cell[i] + 1]) {
-                values[at - start] = CELLIST_VALUE_OF(node);
-                reader.node[i] = lists_nodes[node].next;
-                ++reader.read[i];
-            } else {
-                cellist_close(&reader, i--);
-            }
+    cellist_for_each_open(reader, lists, i) {
+        const uint node = reader.node[i];
+        const uint at = offsets[reader.cell[i]] + reader.read[i];
+        if (node < cellist_view_of(lists).pool_nodes && at < offsets[reader.cell[i] + 1]) {
+            values[at - start] = CELLIST_VALUE_OF(node);
+            cellist_advance(reader, lists, i);
+        } else {
+            cellist_close(&reader, i--);
         }
     }
 }

@@ -11,17 +11,13 @@
 kernel void cellist_lengths(CELLIST_LISTS(CELLIST_RECORD, lists), global uint* lengths) {
     const cellist_view lists_view = cellist_view_of(lists);
     cellist_reader reader = cellist_reader_of(0, cellist_cells(lists));
-    while (cellist_refill(&reader, lists_heads)) {
-        for (uint i = 0; i < reader.open; ++i) {
-            const uint node = reader.node[i];
-            // Links in circles end, too.
-            if (node < lists_view.pool_nodes && reader.read[i] < lists_view.pool_nodes) {
-                reader.node[i] = lists_nodes[node].next;
-                ++reader.read[i];
-            } else {
-                lengths[reader.cell[i]] = reader.read[i];
-                cellist_close(&reader, i--);
-            }
+    cellist_for_each_open(reader, lists, i) {
+        // Links in circles end, too.
+        if (reader.node[i] < lists_view.pool_nodes && reader.read[i] < lists_view.pool_nodes) {
+            cellist_advance(reader, lists, i);
+        } else {
+            lengths[reader.cell[i]] = reader.read[i];
+            cellist_close(&reader, i--);
         }
     }
 }

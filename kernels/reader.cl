@@ -37,6 +37,16 @@ static inline int cellist_refill(cellist_reader* reader, volatile global const u
     return reader->open > 0;
 }
 
+// Loops over the open lists i, until all lists are closed. The body calls cellist_advance for a list
+// or closes it.
+#define cellist_for_each_open(reader, lists, i)                                                    \
+    while (cellist_refill(&(reader), lists##_heads))                                               \
+        for (uint i = 0; i < (reader).open; ++i)
+
+// Counts the node of a list as read, and goes on to the next.
+#define cellist_advance(reader, lists, i)                                                          \
+    ((reader).node[i] = lists##_nodes[(reader).node[i]].next, ++(reader).read[i])
+
 // Puts the last open list in the place of another.
 static inline void cellist_close(cellist_reader* reader, uint i) {
     const uint last = --reader->open;
