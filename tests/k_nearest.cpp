@@ -198,6 +198,15 @@ TEST_CASE("queries that are scalars and vectors; distances that are NaN") {
     for (std::size_t i = 0; i < expected.size(); ++i)
         CHECK(found.records.download()[i].id == expected[i].id);
 
+    // A position may be of doubles or unsigned integers.
+    for (const char* position : {"convert_uint2(query.xy)", "convert_double2(query.xy)"}) {
+        if (!device().info().fp64 && std::string_view(position).find("double") != std::string::npos)
+            continue;
+        NearestOptions other = options;
+        other.position = position;
+        CHECK(lists.nearest(vectors, other).counts.download() == found.counts.download());
+    }
+
     const Buffer<cl_int> scalars(device(), std::vector<cl_int>{0, 3, -1, -2});
     const Nearest<Photon> above = lists.nearest(
         scalars,
@@ -221,6 +230,9 @@ TEST_CASE("k of 65, invalid expressions and values") {
     };
     CHECK(contains(refused({.k = 65, .position = "query", .distance = "1"}), "limit of 64"));
     CHECK(contains(refused({.position = "query", .distance = "record.id++"}), "'++'"));
+    CHECK(contains(refused({.position = "", .distance = "1"}), "position expression is empty"));
+    CHECK(
+        contains(refused({.position = "query", .distance = " "}), "distance expression is empty"));
     CHECK(contains(refused({.position = "*query", .distance = "1"}), "pointer"));
     CHECK(contains(refused({.position = "query", .distance = "1", .values = {{"query", 1.0F}}}),
                    "reserved"));

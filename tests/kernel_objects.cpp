@@ -38,7 +38,7 @@ struct Objects {
 std::string refusal(Kernel& kernel, const auto& argument) {
     const std::string message = error_of([&] { kernel.run(1, cl_uint{1}, argument); }).what();
     UNSCOPED_INFO(message);
-    REQUIRE(contains(message, "kernel " + kernel.name() + ", parameter 1 '"));
+    REQUIRE(contains(message, "kernel " + kernel.name() + ", argument 2 '"));
     return message;
 }
 

@@ -86,6 +86,12 @@ TEST_CASE("a source that does not compile ends in an error with the user's file 
     REQUIRE(contains(error.what(), error.log()));
 }
 
+TEST_CASE("a kernel of a struct that it does not know ends in a hint") {
+    const auto error = error_of<OpenClError>(
+        [] { Kernel(device(), "kernel void f(global const Item* items) {}", "f"); });
+    REQUIRE(contains(error.log(), "name cellist::type<Item> in the constructor"));
+}
+
 TEST_CASE("the line of an error does not depend on the includes and types before it") {
     const Lists<Item> lists(device(), {5});
     for (const std::string before :

@@ -30,6 +30,15 @@ kernel void measure(CELLIST_LISTS(Item, lists), global uint* lengths)
 {
     const uint cell = get_global_id(0);
     lengths[cell] = cellist_length(lists, cell);
+    // Node i of a list is the one that a traversal visits as the i-th.
+    uint i = 0;
+    cellist_for_each(lists, cell, node)
+        if (i % 97 > 3 ? (++i, 0) : cellist_node_at(lists, cell, i++) != node)
+            lengths[cell] = CELLIST_NONE;
+    if (cellist_node_at(lists, cell, i) != CELLIST_NONE ||
+        cellist_node_at(lists, cell, CELLIST_NONE) != CELLIST_NONE ||
+        cellist_node_at(lists, -1, 0) != CELLIST_NONE)
+        lengths[cell] = CELLIST_NONE;
     if (cellist_length(lists, -1) != 0 || cellist_length(lists, cellist_cells(lists)) != 0)
         lengths[cell] = CELLIST_NONE;
 }

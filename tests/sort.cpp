@@ -119,7 +119,7 @@ TEST_CASE("an expression that does not compile ends in an error with the compile
     Lists<Item> lists(device(), {10});
     const Inserts<Item> inserts = random_inserts(144, 10, random);
     Inserter(lists).build(lists, inserts);
-    for (const char* expression : {"record.no_such_member", "record.key + + / 3", ""}) {
+    for (const char* expression : {"record.no_such_member", "record.key + + / 3", "1 +"}) {
         const auto error = error_of<OpenClError>([&] { lists.sort_by(expression); });
         INFO(error.what());
         REQUIRE(error.call() == "clBuildProgram");
@@ -128,6 +128,7 @@ TEST_CASE("an expression that does not compile ends in an error with the compile
     }
     const auto error = error_of<OpenClError>([&] { lists.sort_by("record.no_such_member"); });
     REQUIRE(contains(error.log(), "no_such_member"));
+    REQUIRE(contains(error_of([&] { lists.sort_by(" "); }).what(), "sort expression is empty"));
     require_sound(lists, 144);
     lists.sort(&Item::key);
     require_sorted(lists.download(), oracle_of(inserts, 10), by_key);

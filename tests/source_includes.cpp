@@ -27,6 +27,24 @@ struct Folder {
         fs::temp_directory_path() / ("cellist-test-" + std::to_string(std::random_device{}()));
 };
 
+TEST_CASE("a source is read from a file, whose name errors show") {
+    const Folder folder;
+    const std::string path = (folder.path / "twice.cl").string();
+    std::ofstream(path) << "kernel void twice(global uint* out) { *out = 2 * VALUE; }\n";
+    const Buffer<cl_uint> out(device(), 1);
+    Kernel(device(), Source::from_file(path, "-DVALUE=4"), "twice").run(1, out);
+    REQUIRE(out.download().front() == 8);
+    const auto error =
+        error_of<OpenClError>([&] { Kernel(device(), Source::from_file(path), "twice"); });
+    REQUIRE(contains(error.log(), path + ":1"));
+
+    const auto refused = [](const std::string& name) {
+        return std::string(error_of([&] { (void)Source::from_file(name); }).what());
+    };
+    REQUIRE(contains(refused(path + ".missing"), path + ".missing: No such file"));
+    REQUIRE(contains(refused(folder.path.string()), "Is a directory"));
+}
+
 TEST_CASE("a header that changes is read again by the next kernel") {
     const Folder folder;
     const Buffer<cl_uint> out(device(), 1);

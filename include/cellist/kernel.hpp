@@ -23,6 +23,12 @@ struct Source {
     /// Build options, after "-cl-std=CL1.2 -cl-kernel-arg-info". Macros in these options do not
     /// change the library's own text.
     std::string options = {};
+
+    /// Reads the text from a file. Throws Error with the system's reason if that fails.
+    ///
+    ///     Kernel bin(device, Source::from_file("kernels/bin.cl"), "bin", bins);
+    [[nodiscard]] CELLIST_API static Source from_file(const std::string& path,
+                                                      const std::string& options = {});
 };
 
 /// A kernel from the user's source, built for a device. Movable, not copyable. Using a moved-from

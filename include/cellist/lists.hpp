@@ -489,13 +489,11 @@ private:
     static detail::SortKey key_of(M R::*member, Order order) {
         static_assert(detail::Scalar<M>,
                       "records are ordered by a scalar member, or by an expression");
-        return {std::string("record.") + detail::member_name(member),
-                sizeof(M) <= 4 ? 32u : 64u,
-                order,
-                {}};
+        return {std::string("record.") + detail::member_name(member), sizeof(M) <= 4 ? 32u : 64u,
+                order};
     }
     static detail::SortKey key_of(Order order) {
-        return {"record", sizeof(T) <= 4 ? 32u : 64u, order, {}};
+        return {"record", sizeof(T) <= 4 ? 32u : 64u, order};
     }
 
     /// Packs the value of type M that `member` selects from each record.

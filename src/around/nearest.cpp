@@ -43,8 +43,8 @@ void check_nearest(const NearestOptions& options) {
         throw Error("the " + std::to_string(options.k) +
                     " nearest records of each query exceed the limit of " + std::to_string(k_max) +
                     ": lower k");
-    check_expression(options.position);
-    check_expression(options.distance);
+    check_expression(options.position, "position expression");
+    check_expression(options.distance, "distance expression");
     check_values(options.values, query_subjects());
 }
 

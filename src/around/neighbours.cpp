@@ -48,7 +48,7 @@ SearchProgram program_of(const RecordKernels& kernels, const NeighbourOptions& o
                          const std::string& index) {
     const std::vector<Subject> subjects{{"record", "(*cellist_record)"},
                                         {"other", "(*cellist_other)"}};
-    check_expression(options.distance);
+    check_expression(options.distance, "distance expression");
     check_values(options.values, subjects);
     const RecordType& record = kernels.record();
     const std::string type = "const " + record.type() + "*";

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <numeric>
 #include <optional>
 #include <span>
+#include <sstream>
+#include <system_error>
 
 #include <cellist/detail/build.hpp>
 #include <cellist/kernel.hpp>
@@ -323,8 +327,11 @@ struct Kernel::Impl {
                         std::to_string(written(list, arguments.modes())) +
                         " (a container counts as one; build(kernel, ...) passes it first)");
         const detail::ArgumentCheck check(*device, definitions, name);
-        for (cl_uint i = 0; i < list.size(); ++i)
-            check(i, variant.parameters[i], list[i], arguments.data(list[i]));
+        std::size_t containers = 0;
+        for (cl_uint i = 0; i < list.size(); ++i) {
+            check(i + 1 - 3 * containers, variant.parameters[i], list[i], arguments.data(list[i]));
+            if (list[i].is_container) ++containers;
+        }
         check_local_memory(*device, name, variant, list);
         opencl([&] {
             for (cl_uint i = 0; i < list.size(); ++i)
@@ -369,6 +376,17 @@ struct Kernel::Impl {
         });
     }
 };
+
+Source Source::from_file(const std::string& path, const std::string& options) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    // A directory opens, and only reading it fails.
+    if (file.peek() != std::ifstream::traits_type::eof()) text << file.rdbuf();
+    if (!file.is_open() || file.bad())
+        throw Error("cannot read the kernel source " + path + ": " +
+                    std::generic_category().message(errno));
+    return {.text = std::move(text).str(), .file_name = path, .options = options};
+}
 
 Kernel::Kernel(std::shared_ptr<detail::DeviceState> device, const Source& source,
                const std::string& name, const detail::Definitions& definitions)

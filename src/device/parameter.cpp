@@ -284,10 +284,10 @@ std::vector<Parameter> parameters_of(const cl::Kernel& kernel, const Definitions
     return parameters;
 }
 
-void ArgumentCheck::operator()(std::size_t index, const Parameter& parameter,
+void ArgumentCheck::operator()(std::size_t number, const Parameter& parameter,
                                const Arguments::Argument& argument, const std::byte* data) const {
     const auto fail = [&](const std::string& takes, const std::string& was_given) {
-        throw Error("kernel " + kernel_ + ", parameter " + std::to_string(index) + " '" +
+        throw Error("kernel " + kernel_ + ", argument " + std::to_string(number) + " '" +
                     parameter.declaration + "': takes " + takes + ", was given " + was_given);
     };
     const Given found = given(argument, data);
@@ -307,7 +307,8 @@ void ArgumentCheck::operator()(std::size_t index, const Parameter& parameter,
         fail("memory of " + device_.info.name, "memory of another context");
 
     if (found.kind == Kind::value && parameter.size != 0 && argument.size != parameter.size)
-        fail(bytes(parameter.size), std::to_string(argument.size));
+        fail(parameter.type + " of " + bytes(parameter.size),
+             argument.type + " of " + bytes(argument.size));
     // A fast path: most types are spelt as the parameter's.
     if (!parameter.comparable.empty() && argument.type != parameter.type) {
         const std::string type = comparable(argument.type, definitions_);

@@ -41,7 +41,8 @@ public:
                   const std::string& kernel)
         : device_(device), definitions_(definitions), kernel_(kernel) {}
 
-    void operator()(std::size_t index, const Parameter& parameter,
+    /// `number` counts the arguments as they are written, from 1 on.
+    void operator()(std::size_t number, const Parameter& parameter,
                     const Arguments::Argument& argument, const std::byte* data) const;
 
 private:

@@ -271,6 +271,10 @@ std::string with_hints(std::string log, const std::function<bool(const std::stri
     if (!record.empty())
         log += "\nhint: name a Lists<" + record + "> or cellist::type<" + record +
                "> in the constructor of the Kernel, so that it knows the type";
+    const std::string type = name_after("unknown type name '", log);
+    if (!type.empty() && record.empty())
+        log += "\nhint: if '" + type + "' is an adapted struct, name cellist::type<" + type +
+               "> in the constructor of the Kernel";
     if (log.find("ptxas") != std::string::npos && log.find("near '}'") != std::string::npos)
         log += "\nhint: NVIDIA's compiler fails at kernels without parameters; give each one";
     if (log.find("'cellist_order'") != std::string::npos)

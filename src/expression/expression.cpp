@@ -98,7 +98,9 @@ std::string quoted(std::string_view part) {
 
 }  // namespace
 
-void check_expression(std::string_view text) {
+void check_expression(std::string_view text, const std::string& what) {
+    if (text.find_first_not_of(blanks) == std::string_view::npos)
+        throw Error("the " + what + " is empty");
     if (text.size() > expression_length_max)
         throw Error("an expression of " + std::to_string(text.size()) +
                     " characters exceeds the limit of " + std::to_string(expression_length_max) +

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 namespace cellist::detail {
@@ -15,7 +16,7 @@ constexpr std::size_t expression_length_max = 1024;
 /// itself. Also refuses syntax that writes or uses pointers: assignments, unary * and &, pointer
 /// types, ->, atomics, and other functions that write. The device's compiler checks names and
 /// types; nothing checks values and indices.
-void check_expression(std::string_view text);
+void check_expression(std::string_view text, const std::string& what = "expression");
 
 /// Throws Error unless an expression can use a value of this name.
 void check_value_name(std::string_view name);

@@ -118,7 +118,7 @@ std::shared_ptr<ListsCore> ListsCore::copy() const {
 }
 
 std::uint64_t ListsCore::remove_if(const std::string& expression, const Values& values) {
-    SortKey key{expression, 32, Order::ascending, values};
+    SortKey key{expression, 32, Order::ascending, values, "remove_if expression"};
     check_key(key);
     key.expression = "(" + expression + ") != 0";
     require_buildable();

@@ -20,7 +20,7 @@ const std::vector<Subject>& key_subjects() {
 }  // namespace
 
 void check_key(const SortKey& key) {
-    check_expression(key.expression);
+    check_expression(key.expression, key.what);
     check_values(key.values, key_subjects());
 }
 
@@ -29,13 +29,13 @@ ExpressionProgram key_program(const SortKey& key) {
     const std::string pointer = "global const CELLIST_RECORD_TYPE* cellist_sort_at";
     return expression_program(
         key.values, {{.expression = key.expression,
-                      .what = "sort expression",
+                      .what = key.what,
                       .head = "static inline " + type + " cellist_sort_key(" + pointer + ",\n    ",
                       .before = "(" + type + ")" + (key.order == Order::descending ? "~" : "") +
                                 "cellist_order",
                       .subjects = key_subjects()},
                      {.expression = key.expression,
-                      .what = "sort expression",
+                      .what = key.what,
                       .head = "static inline uint cellist_sort_key_bytes(",
                       .before = "(uint)sizeof",
                       .subjects = key_subjects(),

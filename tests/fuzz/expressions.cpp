@@ -424,7 +424,7 @@ bool uses_pointers(std::string text) {
 
 /// Whether a text is refused before the compiler sees it: the same rule in other words.
 bool is_refused(const std::string& text) {
-    if (text.size() > 1024) return true;
+    if (text.size() > 1024 || text.find_first_not_of(" \t\r\n") == std::string::npos) return true;
     static const std::regex allowed("[\\w\\s+\\-*/%&|^~!<>=?:.,()\\[\\]]*");
     static const std::regex refused(
         "//|/\\*|\\?\\?|<%|%>|%:|<:|:>|->|\\+\\+|--|[-+*/%&|^]=|<<=|>>=");

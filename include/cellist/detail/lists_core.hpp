@@ -33,7 +33,8 @@ struct SortKey {
     std::string expression;  ///< of `record`
     unsigned bits;           ///< 32 or 64: what its values need
     Order order;
-    Values values = {};  ///< that the expression uses
+    Values values = {};                    ///< that the expression uses
+    const char* what = "sort expression";  ///< in messages
 };
 
 /// What a container is doing. Build moves its containers from ready to building, pending and back,
