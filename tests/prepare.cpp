@@ -55,6 +55,12 @@ struct Frame {
 
     void operator()() {
         lists.build(insert, Range::padded(frame_count), inserted, in_first);
+        if (grows) {
+            lists.append(insert, Range::padded(frame_count), appended, in_first);
+            lists.remove_if("record.id % 7u == which", {{"which", appended % 7u}});
+            lists.merge(lists.copy());
+            (void)lists.device_histogram(10);
+        }
         lists.sort(&Item::key);
         lists.sort_by("record.id ^ 5u", Order::descending);
         lists.partial_sort(&Item::id, 4);
@@ -72,6 +78,8 @@ struct Frame {
     Buffer<cl_uint> sums{device, frame_cells};
     cl_uint inserted = frame_count;
     cl_uint in_first = 0;
+    bool grows = false;  ///< appends, removes and merges
+    cl_uint appended = 100;
 };
 
 /// Frames with other data than prepare() saw load no function that it had not loaded.
@@ -81,6 +89,7 @@ void require_prepared(Frame& frame, const std::vector<cl_uint>& in_first) {
         for (const cl_uint first : in_first) {
             frame.inserted = inserted;
             frame.in_first = first;
+            frame.appended = frame_count - 7u;
             INFO("inserted " << inserted << ", in the first cell " << first);
             frame();
             frame.device.finish();
@@ -99,6 +108,17 @@ TEST_CASE("after prepare() nothing is compiled, whatever the lengths of the list
     // A long list takes as many slots for every cell.
     require_prepared(frame, has_slots(storage) ? std::vector{0u, 300u, 1'000u}
                                                : std::vector{0u, 300u, 5'000u, 150'000u});
+}
+
+TEST_CASE("after prepare() nothing is compiled for appends, copies, merges and removals") {
+    CELLIST_EACH_STORAGE(storage);
+    const Device on = Device::choose();
+    // With much room, the prepared appends do not grow the pool, and later ones do.
+    const cl_uint capacity = GENERATE(0u, 3 * frame_count);
+    Frame frame(on, {.storage = storage, .capacity_nodes = capacity});
+    frame.grows = true;
+    on.prepare(std::ref(frame));
+    require_prepared(frame, {0u, 300u});
 }
 
 TEST_CASE("after prepare() sorts by work-groups compile nothing either") {
