@@ -25,6 +25,7 @@ bool same_layout(const RecordType& a, const RecordType& b) {
 /// the compiler complains.
 std::string because_of(const RecordType& record) { return "  // " + record.type() + "\n"; }
 std::string because_of(const RecordType& record, const RecordMember& member) {
+    if (!record.is_struct) return because_of(record);
     return "  // member " + member.name + " of " + record.type() + "\n";
 }
 
