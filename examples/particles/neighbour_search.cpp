@@ -21,6 +21,8 @@ constexpr auto distance_squared =
     "fmin(fabs(record.z - other.z), period - fabs(record.z - other.z)) * "
     "fmin(fabs(record.z - other.z), period - fabs(record.z - other.z))))";
 
+}  // namespace
+
 Space make_space(const Scene& scene, int cells_per_radius) {
     Space space{};
     // Distances and places are rounded, by less than this part of the radius.
@@ -42,22 +44,56 @@ Space make_space(const Scene& scene, int cells_per_radius) {
     return space;
 }
 
-cellist::Source source() {
+std::vector<Particle> numbered_points(const Scene& scene, std::size_t first, std::size_t end) {
+    std::vector<Particle> points;
+    points.reserve(end - first);
+    for (std::size_t i = first; i < end; ++i) {
+        const cl_float4& point = scene.points[i];
+        points.push_back({point.s[0], point.s[1], point.s[2], static_cast<cl_uint>(i)});
+    }
+    return points;
+}
+
+cellist::Source kernel_source() {
     return {.text = std::string(kernels::particles_cl), .file_name = "particles.cl"};
 }
 
-}  // namespace
+// ---- NeighbourSums ---------------------------------------------------------------------------
+
+NeighbourSums::NeighbourSums(const cellist::Device& device, const Space& space, cl_float radius)
+    : device_(device),
+      space_(space),
+      radius_(radius),
+      sums_(device, 0),
+      sum_(device, kernel_source(), "sum_neighbours", cellist::type<Particle>) {}
+
+void NeighbourSums::find(const cellist::Lists<Particle>& lists) {
+    neighbours_ = lists.neighbours(&Particle::id,
+                                   {.distance = distance_squared,
+                                    .radius = radius_ * radius_,
+                                    .radius_cells = space_.radius_cells,
+                                    .values = {{"period", space_.period}}},
+                                   std::move(neighbours_));
+    if (sums_.size() < neighbours_.records)
+        sums_ = cellist::Buffer<cl_uint2>(device_, neighbours_.records);
+    const auto count = static_cast<cl_uint>(neighbours_.records);
+    sum_.run(cellist::Range::padded(count, 64), neighbours_.offsets, neighbours_.indices, count,
+             sums_);
+}
+
+std::vector<cl_uint2> NeighbourSums::download() const {
+    return sums_.download(0, neighbours_.records);
+}
+
+// ---- NeighbourSearch -------------------------------------------------------------------------
 
 NeighbourSearch::NeighbourSearch(const cellist::Device& device, const Scene& scene,
                                  cellist::Storage storage, int cells_per_radius)
     : space_(make_space(scene, cells_per_radius)),
-      radius_(scene.radius),
-      points_(device, scene.points),
-      lists_(device, {space_.extent, space_.extent, space_.extent},
-             {.storage = storage, .periodic = {true, true, true}}),
-      found_(device, scene.points.size()),
-      insert_(device, source(), "insert_particles", lists_),
-      sum_(device, source(), "sum_neighbours", lists_) {}
+      points_(device, numbered_points(scene, 0, scene.points.size())),
+      lists_(device, space_.shape(), {.storage = storage, .periodic = {true, true, true}}),
+      insert_(device, kernel_source(), "insert_particles", lists_),
+      sums_(device, space_, scene.radius) {}
 
 cellist::BuildReport NeighbourSearch::build() {
     const auto count = static_cast<cl_uint>(points_.size());
@@ -65,17 +101,12 @@ cellist::BuildReport NeighbourSearch::build() {
                         space_.cells_per_unit);
 }
 
-void NeighbourSearch::find() {
-    neighbours_ = lists_.neighbours(&Particle::id,
-                                    {.distance = distance_squared,
-                                     .radius = radius_ * radius_,
-                                     .radius_cells = space_.radius_cells,
-                                     .values = {{"period", space_.period}}},
-                                    std::move(neighbours_));
-    const auto count = static_cast<cl_uint>(neighbours_.records);
-    found_.fill({{0, 0}});
-    sum_.run(cellist::Range::padded(count, 64), neighbours_.offsets, neighbours_.indices,
-             lists_.pack(&Particle::id).records, count, found_);
+std::vector<cl_uint2> NeighbourSearch::found() const {
+    const std::vector<cl_uint> ids = lists_.pack(&Particle::id).records.download();
+    const std::vector<cl_uint2> sums = sums_.download();
+    std::vector<cl_uint2> found(points_.size(), {{0, 0}});
+    for (std::size_t i = 0; i < ids.size(); ++i) found[ids[i]] = sums[i];
+    return found;
 }
 
 }  // namespace particles

@@ -31,15 +31,15 @@ static int cell_of(float x, float cells_per_unit) {
     return (int)whole + (int)floor(place - whole + error);
 }
 
-// One work-item a point: x, y, z. Points without a place in space are rejected.
-kernel void insert_particles(CELLIST_LISTS(Particle, particles), global const float4* points,
+// One work-item a point. Points without a place in space are rejected.
+kernel void insert_particles(CELLIST_LISTS(Particle, particles), global const Particle* points,
                              uint count, float period, float cells_per_unit) {
     const uint i = get_global_id(0);
     if (i >= count) return;
-    const float4 point = points[i];
+    const Particle point = points[i];
     const int valid = isfinite(point.x) && isfinite(point.y) && isfinite(point.z);
     const Particle particle = {wrap(point.x, period), wrap(point.y, period), wrap(point.z, period),
-                               i};
+                               point.id};
     const uint cell = valid ? cellist_cell3(particles, cell_of(particle.x, cells_per_unit),
                                             cell_of(particle.y, cells_per_unit),
                                             cell_of(particle.z, cells_per_unit))
@@ -54,17 +54,16 @@ static uint hash(uint x) {
     return x ^ (x >> 16);
 }
 
-// For each point, the number of its neighbours, and the sum of hashes of their numbers, which does
-// not depend on their order. One work-item a particle.
+// For each particle, the number of its neighbours, and the sum of hashes of their numbers, which
+// does not depend on their order. One work-item a particle.
 //
 // offsets      where the neighbours of each particle begin, and the end of the last
 // neighbours   numbers of points
-// ids          the number of each particle's point
-kernel void sum_neighbours(global const uint* offsets, global const uint* neighbours,
-                           global const uint* ids, uint count, global uint2* found) {
+kernel void sum_neighbours(global const uint* offsets, global const uint* neighbours, uint count,
+                           global uint2* found) {
     const uint i = get_global_id(0);
     if (i >= count) return;
     uint sum = 0;
     for (uint n = offsets[i]; n < offsets[i + 1]; ++n) sum += hash(neighbours[n]);
-    found[ids[i]] = (uint2)(offsets[i + 1] - offsets[i], sum);
+    found[i] = (uint2)(offsets[i + 1] - offsets[i], sum);
 }
