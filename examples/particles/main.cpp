@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Neighbour search with cell lists, checked against a k-d tree.
+// Neighbour search with cell lists, on one device or over MPI, checked against a k-d tree.
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <cellist/cellist.hpp>
 
@@ -13,6 +15,10 @@
 #include "reference.hpp"
 #include "scene.hpp"
 #include "stopwatch.hpp"
+#ifdef CELLIST_EXAMPLE_MPI
+#include "distributed_search.hpp"
+#include "mpi_job.hpp"
+#endif
 
 namespace {
 
@@ -24,6 +30,7 @@ struct Options {
     std::size_t check = 50'000;
     std::uint64_t runs = 3;
     std::uint32_t seed = 1;
+    bool mpi = false;
     std::string device;
     std::string help;
 };
@@ -55,50 +62,136 @@ Options parse_options(int count, const char* const* arguments) {
                     "timed runs, after a warm-up; the fastest counts");
     line.add_seed(options.seed);
     line.add_device(options.device);
+    line.add_mpi(options.mpi, "divide the cells between the ranks of mpirun");
     options.help = line.parse(count, arguments).value_or("");
     options.check = std::min(options.check, options.points);
     return options;
 }
 
-bool run(const Options& options) {
-    constexpr double neighbours = 30;
-    const cellist::Device device = options.device.empty() ? cellist::Device::choose()
-                                                          : cellist::Device::choose(options.device);
-    const particles::Scene scene =
-        particles::make_scene(options.points, neighbours, options.box, options.seed);
+// The least times of the parts of a step.
+using Times = std::vector<std::pair<std::string, support::Least>>;
+
+struct Measured {
+    std::string device;
+    int ranks = 1;
+    cellist::BuildReport report = {};  ///< of the first build
+    std::string cells = {};
+    double megabytes = 0;  ///< of the lists, on one device
+    Times times = {};
+    std::vector<cl_uint2> found = {};
+};
+
+cellist::Device choose_device(const Options& options) {
+    return options.device.empty() ? cellist::Device::choose()
+                                  : cellist::Device::choose(options.device);
+}
+
+Measured measure(const Options& options, const particles::Scene& scene) {
+    const cellist::Device device = choose_device(options);
     particles::NeighbourSearch search(device, scene, options.storage, options.cells_per_radius);
-
-    cellist::BuildReport report = search.build();  // lets the pool grow
+    Measured measured{.device = device.info().name, .times = {{"build", {}}, {"all pairs", {}}}};
+    measured.report = search.build();  // lets the pool grow
     search.find();
-    support::Least build_ms, find_ms;
     for (std::uint64_t i = 0; i < options.runs; ++i) {
-        build_ms.add(support::measure_ms(device, [&] { report = search.build(); }));
-        find_ms.add(support::measure_ms(device, [&] { search.find(); }));
+        measured.times[0].second.add(support::measure_ms(device, [&] { search.build(); }));
+        measured.times[1].second.add(support::measure_ms(device, [&] { search.find(); }));
     }
+    measured.cells = search.lists().shape().to_string();
+    measured.megabytes = static_cast<double>(search.lists().pool_bytes()) * 1e-6;
+    measured.found = search.found();
+    return measured;
+}
 
-    const std::vector<cl_uint2> found = search.found();
+#ifdef CELLIST_EXAMPLE_MPI
+
+// The time until the slowest rank is ready.
+double measure_on_ranks(const cellist::Device& device, std::invocable auto&& work) {
+    device.finish();
+    MPI_Barrier(MPI_COMM_WORLD);
+    double ms = support::measure_ms(device, work);
+    MPI_Allreduce(MPI_IN_PLACE, &ms, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+    return ms;
+}
+
+Measured measure_distributed(const Options& options, const particles::Scene& scene) {
+    const cellist::Device device =
+        options.device.empty() ? cellist::mpi::choose(MPI_COMM_WORLD) : choose_device(options);
+    particles::DistributedSearch search(device, scene, options.storage, options.cells_per_radius);
+    const cellist::mpi::Lists<particles::Particle>& lists = search.lists();
+    Measured measured{.device = device.info().name,
+                      .ranks = lists.partition().ranks(),
+                      .times = {{"build", {}}, {"ghosts", {}}, {"all pairs", {}}}};
+    // The first step brings all points to their ranks; the second compiles the last kernels.
+    measured.report = search.build();
+    for (int step = 0; step < 2; ++step) {
+        search.exchange_ghosts();
+        search.find();
+        search.build();
+    }
+    for (std::uint64_t i = 0; i < options.runs; ++i) {
+        Times& times = measured.times;
+        times[0].second.add(measure_on_ranks(device, [&] { search.build(); }));
+        times[1].second.add(measure_on_ranks(device, [&] { search.exchange_ghosts(); }));
+        times[2].second.add(measure_on_ranks(device, [&] { search.find(); }));
+    }
+    measured.cells = lists.shape().to_string();
+    measured.megabytes = static_cast<double>(lists.local().pool_bytes()) * 1e-6;
+    measured.found = search.found();
+    return measured;
+}
+
+#endif
+
+// Prints the results and checks them.
+bool report(const Options& options, const particles::Scene& scene, const Measured& measured) {
     std::uint64_t ends = 0;  // of pairs: each pair is found from both
-    for (const cl_uint2& of_point : found) ends += of_point.s[0];
-    std::printf("device      %s\n", device.info().name.c_str());
+    for (const cl_uint2& of_point : measured.found) ends += of_point.s[0];
+    std::printf("device      %s\n", measured.device.c_str());
+    if (options.mpi) std::printf("ranks       %d\n", measured.ranks);
     std::printf("points      %zu, %s box, %llu rejected\n", options.points,
                 options.box == particles::Box::open ? "open" : "periodic",
-                static_cast<unsigned long long>(report.rejected));
+                static_cast<unsigned long long>(measured.report.rejected));
     std::printf("lists       %s, %s cells, %.1f MB\n", name_of(options.storage),
-                search.lists().shape().to_string().c_str(),
-                static_cast<double>(search.lists().pool_bytes()) * 1e-6);
+                measured.cells.c_str(), measured.megabytes);
     std::printf(
         "pairs       %llu, %.1f neighbours per point\n", static_cast<unsigned long long>(ends / 2),
         static_cast<double>(ends) / static_cast<double>(std::max<std::size_t>(options.points, 1)));
-    std::printf("time        build %.1f ms, all pairs %.1f ms, together %.1f ms\n", build_ms.ms(),
-                find_ms.ms(), build_ms.ms() + find_ms.ms());
+    double together_ms = 0;
+    std::printf("time        ");
+    for (const auto& [part, least] : measured.times) {
+        std::printf("%s %.1f ms, ", part.c_str(), least.ms());
+        together_ms += least.ms();
+    }
+    std::printf("together %.1f ms\n", together_ms);
 
-    const particles::Comparison comparison = particles::compare(scene, found, options.check);
-    const bool accounted = report.rejected == scene.invalid && report.dropped == 0 &&
-                           report.stored + report.rejected == options.points;
+    const particles::Comparison comparison =
+        particles::compare(scene, measured.found, options.check);
+    const bool accounted = measured.report.rejected == scene.invalid &&
+                           measured.report.dropped == 0 &&
+                           measured.report.stored + measured.report.rejected == options.points;
     std::printf("check       %s: neighbours of %zu points, %zu differ; records %s\n",
                 comparison.method.c_str(), comparison.points, comparison.different,
                 accounted ? "all accounted for" : "MISSING");
     return comparison.different == 0 && accounted;
+}
+
+bool run(const Options& options) {
+    constexpr double neighbours = 30;
+    const auto make_scene = [&] {
+        return particles::make_scene(options.points, neighbours, options.box, options.seed);
+    };
+#ifdef CELLIST_EXAMPLE_MPI
+    if (options.mpi) {
+        support::MpiJob job("particles");
+        return job.run([&] {
+            const particles::Scene scene = make_scene();
+            const Measured measured = measure_distributed(options, scene);
+            return !job.is_first() || report(options, scene, measured);
+        });
+    }
+#endif
+    const particles::Scene scene = make_scene();
+    return report(options, scene, measure(options, scene));
 }
 
 }  // namespace

@@ -119,6 +119,18 @@ void CommandLine::add_device(std::string& device) {
         "D");
 }
 
+void CommandLine::add_mpi(bool& mpi, const std::string& what) {
+    add_flag("--mpi", mpi, what);
+#ifndef CELLIST_EXAMPLE_MPI
+    add_check([&mpi] {
+        if (mpi)
+            throw InputError(
+                "this program was built without MPI, so there is no --mpi: install libopenmpi-dev, "
+                "configure and build again");
+    });
+#endif
+}
+
 void CommandLine::add_check(std::function<void()> check) {
     parser_->checks.push_back(std::move(check));
 }

@@ -88,6 +88,8 @@ public:
     void add_seed(std::uint32_t& seed);
     /// --device D
     void add_device(std::string& device);
+    /// --mpi, which programs that are built without MPI refuse.
+    void add_mpi(bool& mpi, const std::string& what);
 
     /// A check of values together, after all of them have been read.
     void add_check(std::function<void()> check);
