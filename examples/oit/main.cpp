@@ -24,6 +24,12 @@
 #include "report/picture.hpp"
 #include "report/report.hpp"
 #include "stopwatch.hpp"
+#ifdef CELLIST_EXAMPLE_MPI
+#include <cellist/mpi.hpp>
+
+#include "mpi/distributed_lists.hpp"
+#include "mpi_job.hpp"
+#endif
 
 namespace {
 
@@ -78,7 +84,8 @@ std::vector<double> draw_frames(oit::Frame& frame, const oit::Options& options,
         set_moment(frame, options, i, options.frames);
         const auto [milliseconds, renderer] = draw();
         frames.push_back(milliseconds);
-        if (options.out.has_number()) write_picture(options, frame, renderer->image(), i + 1);
+        if (options.writes() && options.out.has_number())
+            write_picture(options, frame, renderer->image(), i + 1);
     }
     return frames;
 }
@@ -161,10 +168,11 @@ void write(oit::Report& report, const cellist::Device& device, const oit::Frame&
     if (oit::method_named(options.method).has_nodes)
         report.node_bytes = 4 * renderer.layout().words;
     report.colour_max = renderer.features().colour_max;
+    report.lengths = renderer.method().lengths();
+    if (!options.writes()) return;
     const std::vector<cl_float4> image = renderer.image();
     report.pixels_nan = oit::count_nan(image);
     if (!options.out.has_number()) write_picture(options, frame, image, 1);
-    report.lengths = renderer.method().lengths();
     report.blends_slices = renderer.method().blends_slices();
     report.slices = renderer.method().slices();
     report.method_bytes = renderer.method().device_bytes();
@@ -178,9 +186,27 @@ void write(oit::Report& report, const cellist::Device& device, const oit::Frame&
     oit::print(report, options.writes_to_stdout() ? std::cerr : std::cout);
 }
 
+cellist::Device choose_device(const oit::Options& options) {
+#ifdef CELLIST_EXAMPLE_MPI
+    if (options.mpi && options.device.empty()) {
+        cellist::Device device = cellist::mpi::choose(MPI_COMM_WORLD);
+        oit::check_size(options, device);
+        return device;
+    }
+#endif
+    return oit::choose_device(options);
+}
+
+oit::MethodInfo method_of(const oit::Options& options) {
+#ifdef CELLIST_EXAMPLE_MPI
+    if (options.mpi) return oit::distributed(oit::method_named(options.method));
+#endif
+    return oit::method_named(options.method);
+}
+
 // The exit code: 2 where no setting meets the budget.
 int run(const oit::Options& options) {
-    const cellist::Device device = oit::choose_device(options);
+    const cellist::Device device = choose_device(options);
     oit::Scene scene = oit::make_scene(options);
     if (options.until) oit::require_motion(scene, options, "--until");
     oit::Report report;
@@ -190,8 +216,9 @@ int run(const oit::Options& options) {
     describe(report, scene, device);
     oit::Frame frame = oit::make_frame(scene, options);
     frame.memory_bytes = options.memory_bytes;
+    frame.share = options.share;
     if (!options.budget) {
-        oit::Renderer renderer(device, frame, oit::method_named(options.method));
+        oit::Renderer renderer(device, frame, method_of(options));
         draw_with_method(report, renderer, frame);
         write(report, device, frame, renderer);
         return 0;
@@ -212,6 +239,14 @@ int run(const oit::Options& options) {
     return report.record.met() ? 0 : 2;
 }
 
+#ifdef CELLIST_EXAMPLE_MPI
+bool run_on_ranks(oit::Options options) {
+    support::MpiJob job("cellist-oit");
+    options.share = {static_cast<std::size_t>(job.rank()), static_cast<std::size_t>(job.ranks())};
+    return job.run([&] { return run(options) == 0; });
+}
+#endif
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -220,6 +255,10 @@ int main(int count, char** arguments) {
         const oit::Options options = oit::parse_options(count, arguments);
         if (!options.help_text.empty())
             std::cout << options.help_text;
+#ifdef CELLIST_EXAMPLE_MPI
+        else if (options.mpi)
+            return run_on_ranks(options);
+#endif
         else
             exit_code = run(options);
         return true;

@@ -93,6 +93,9 @@ void refuse_idle_options(const support::CommandLine& line, const Options& option
     const auto of_frames = [&](const char* name) {
         return idle_if(one_frame, "", name, " needs several frames: --frames is 1");
     };
+    const auto not_distributed = [&](const char* name) {
+        return idle_if(options.mpi, "--mpi draws without ", name, ": leave one of them out");
+    };
     const support::IdleOption table[] = {
         chosen("--method"),
         chosen("--layers"),
@@ -126,6 +129,13 @@ void refuse_idle_options(const support::CommandLine& line, const Options& option
         of_nodes("--format"),
         of_frames("--until"),
         of_frames("--turn"),
+        not_distributed("--lens"),
+        not_distributed("--reduce"),
+        not_distributed("--memory"),
+        not_distributed("--budget"),
+        not_distributed("--heatmap"),
+        {"--samples", options.mpi && is_exact,
+         "--mpi does not send the triangles that --samples exact needs: leave one of them out"},
         {"--check-every", !options.moves(),
          "--check-every is for frames that change: add --until or --turn"},
     };
@@ -212,6 +222,8 @@ void add_output_options(support::CommandLine& line, Options& options) {
     line.add_text("--json", options.json, "write the metrics to this file", "FILE");
     line.add_number("--frames", options.frames, 1, 1'000'000,
                     "timed frames, after a warm-up; times are medians");
+    line.add_mpi(options.mpi,
+                 "share the triangles and the rows of the picture between the ranks of mpirun");
 }
 
 }  // namespace

@@ -28,6 +28,10 @@ struct Options : FrameOptions {
     std::filesystem::path heatmap = {};
     std::filesystem::path json = {};
     std::uint32_t frames = 5;
+    bool mpi = false;  ///< over the ranks of mpirun
+    /// The part of the triangles that this process draws. The first process writes all files.
+    raster::Share share = {};
+    [[nodiscard]] bool writes() const { return share.index == 0; }
     /// Whether frames show different moments.
     [[nodiscard]] bool moves() const { return until || turn_degrees != 0; }
     /// Whether a file goes to stdout, so that the report goes to stderr.

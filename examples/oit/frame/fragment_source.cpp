@@ -140,7 +140,7 @@ FragmentSource::FragmentSource(const cellist::Device& device, const Frame& frame
       setup_(device, sampling()),
       geometry_(device, meshes_of(frame.scene)),
       projection_(device, setup_, geometry_, placed_at(frame.scene, frame.time), frame.views),
-      transparent_(device, projection_, chosen(frame, false)),
+      transparent_(device, projection_, chosen(frame, false), frame.share),
       materials_(device, frame.scene.materials),
       opacities_(device,
                  features_.opacities ? opacities_of(frame.scene) : std::vector<cl_float>(1)),

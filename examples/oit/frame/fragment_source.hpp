@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -123,6 +124,10 @@ public:
     /// pixel: what the transparent surfaces add, and the part of the light behind that they let
     /// pass.
     [[nodiscard]] const cellist::Buffer<cl_float4>& image() const { return image_; }
+    /// Replaces the image of an eye. Blocks.
+    void set_image(std::span<const cl_float4> pixels, std::size_t eye) {
+        image_.upload(pixels, eye * pixels.size());
+    }
     /// The least depth of the opaque surfaces in each sample, as the bits of floats; null where
     /// there are none.
     [[nodiscard]] const cellist::Buffer<cl_uint>* depth_bits() const {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "frame/node_format.hpp"
+#include "raster/share.hpp"
 #include "raster/view.hpp"
 #include "scene/scene.hpp"
 
@@ -74,6 +75,8 @@ struct Frame {
     int margin = 0;
     /// The most that a method may keep on the device. Lists are built and blended in slices then.
     std::optional<std::uint64_t> memory_bytes = {};
+    /// The part of the transparent triangles that this process draws.
+    raster::Share share = {};
 
     /// Opaque surfaces are fragments, as all others are. Otherwise they are drawn first, and hide
     /// fragments.

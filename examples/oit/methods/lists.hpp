@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <cellist/options.hpp>
 
@@ -18,6 +19,12 @@ struct ListReader {
     std::string kernel;
     bool needs_sorted = true;  ///< lists are sorted before it runs
 };
+
+/// The source of the pass that puts fragments into lists: see FragmentSource::pass().
+[[nodiscard]] std::string_view list_pass();
+
+/// The reader that blends a picture of this quality, nearest first.
+[[nodiscard]] ListReader list_reader(const Quality& quality);
 
 /// The method that keeps fragments in cellist::Lists with these options, and blends them nearest
 /// first; or leaves that to another reader. Under Frame::memory_bytes, a slice of the pixels at a

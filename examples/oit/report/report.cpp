@@ -208,6 +208,7 @@ void print(const Report& report, std::ostream& out) {
         << (options.quality.layers ? nearest_text(*options.quality.layers) : "all layers")
         << (options.opaque_floor ? ", opaque floor" : "") << '\n';
     line("device") << report.device << " (driver " << report.driver << ")\n";
+    if (options.mpi) line("ranks") << options.share.count << '\n';
     print_method(report, line);
     print_fragments(report, line);
     print_memory(report, line);

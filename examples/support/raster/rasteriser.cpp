@@ -274,11 +274,23 @@ std::vector<RasterBatch> Projection::triangle_batches(std::span<const std::size_
     return batches;
 }
 
+namespace {
+
+// Neighbouring batches go to different parts, so that each part has some of every region.
+std::vector<RasterBatch> part_of(const std::vector<RasterBatch>& batches, const Share& share) {
+    std::vector<RasterBatch> part;
+    for (std::size_t i = share.index; i < batches.size(); i += share.count)
+        part.push_back(batches[i]);
+    return part;
+}
+
+}  // namespace
+
 Triangles::Triangles(const cellist::Device& device, const Projection& projection,
-                     std::span<const std::size_t> chosen)
+                     std::span<const std::size_t> chosen, const Share& share)
     : device_(device),
       projection_(projection),
-      batches_(device, in_order_for(device, projection.triangle_batches(chosen))),
+      batches_(device, in_order_for(device, part_of(projection.triangle_batches(chosen), share))),
       bin_range_(bin_range(device, batches_.size())),
       triangle_range_(batches_range(batches_.size())),
       block_range_(block_range(device)),

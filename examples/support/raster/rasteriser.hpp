@@ -13,6 +13,7 @@
 #include <cellist/cellist.hpp>
 
 #include "mesh.hpp"
+#include "raster/share.hpp"
 #include "raster/view.hpp"
 
 namespace raster {
@@ -162,7 +163,7 @@ public:
     /// `chosen` are indices of the projection's instances. Refers to the projection, which must
     /// outlive it.
     Triangles(const cellist::Device& device, const Projection& projection,
-              std::span<const std::size_t> chosen);
+              std::span<const std::size_t> chosen, const Share& share = {});
 
     /// Puts the large triangles and their blocks into queues. Does not block.
     void bin() {
