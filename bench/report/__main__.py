@@ -5,6 +5,9 @@
                               collects the output of the programs as results
   merge-oit [--note TEXT] --out RESULTS.json FRAMES.json [GRID.json]
                               the same for cellist-oit-frames and cellist-budget-grid
+  merge-mpi --git HASH [--note TEXT] --out RESULTS.json OUTPUT.json...
+                              the same for cellist_bench_mpi, an output for each number of ranks
+  mpi RESULTS.json PLOT.svg   prints their table and goals, and writes their plot
   ratios RESULTS.json         prints the table of ratios
   goals RESULTS.json          prints the goals of transparency
   plots RESULTS.json DIRECTORY    writes the plots as SVG
@@ -19,6 +22,7 @@ import sys
 
 import documents
 import figures
+import mpi
 import oit
 import oit_tables
 import plots
@@ -37,6 +41,17 @@ def _merge(options):
 def _merge_oit(options):
     grid = figures.load(options.grid) if options.grid else None
     figures.save(oit.merge(figures.load(options.frames), grid, options.note), options.out)
+
+
+def _merge_mpi(options):
+    outputs = [figures.load(path) for path in options.outputs]
+    figures.save(mpi.merge(outputs, options.git, options.note), options.out)
+
+
+def _mpi(options):
+    results = figures.load(options.results)
+    whole_files.write_text(options.plot, mpi.plot(results))
+    print(mpi.as_text(results))
 
 
 def _goals(options):
@@ -81,6 +96,16 @@ def main():
     merge_oit.add_argument("frames")
     merge_oit.add_argument("grid", nargs="?")
     merge_oit.set_defaults(run=_merge_oit)
+    merge_mpi = commands.add_parser("merge-mpi")
+    merge_mpi.add_argument("--git", required=True)
+    merge_mpi.add_argument("--note", default="")
+    merge_mpi.add_argument("--out", required=True)
+    merge_mpi.add_argument("outputs", nargs="+")
+    merge_mpi.set_defaults(run=_merge_mpi)
+    mpi_table = commands.add_parser("mpi")
+    mpi_table.add_argument("results")
+    mpi_table.add_argument("plot")
+    mpi_table.set_defaults(run=_mpi)
     goals = commands.add_parser("goals")
     goals.add_argument("results")
     goals.set_defaults(run=_goals)

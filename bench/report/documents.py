@@ -2,13 +2,15 @@
 """Tables and plots in the documentation, generated from bench/results/*.json.
 
 A table stands between the lines `<!-- results: NAME -->` and `<!-- end of results -->`. Results of
-transparency are in files that start with "oit-".
+transparency are in files that start with "oit-", those of distributed lists in files that start with
+"mpi-".
 """
 
 import pathlib
 import re
 
 import figures
+import mpi
 import oit_tables
 import plots
 import ratios
@@ -16,7 +18,7 @@ import tables
 import whole_files
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-DOCUMENTS = ("README.md", "docs/performance.md", "docs/transparency-results.md")
+DOCUMENTS = ("README.md", "docs/performance.md", "docs/transparency-results.md", "docs/mpi-scaling.md")
 PLOT_TITLES = {
     "throughput": "throughput against size",
     "ceiling": "inserts against the ceiling",
@@ -57,12 +59,14 @@ def _contents():
     """The expected content of each generated file, by path."""
     paths = set((ROOT / "bench/results").glob("*.json"))
     oit_paths = {path for path in paths if path.stem.startswith("oit-")}
-    runs, oit_runs = _runs(paths - oit_paths), _runs(oit_paths)
+    mpi_paths = {path for path in paths if path.stem.startswith("mpi-")}
+    runs, oit_runs, mpi_runs = _runs(paths - oit_paths - mpi_paths), _runs(oit_paths), _runs(mpi_paths)
     for results in runs:
         # Goals may have changed since the file was written.
         results["ratios"] = ratios.compute(results)
     generated = {name: table(runs) for name, table in TABLES.items()}
     generated.update({name: table(oit_runs) for name, table in oit_tables.TABLES.items()})
+    generated["mpi"] = mpi.as_markdown(mpi_runs)
     contents = {}
     for name in DOCUMENTS:
         path = ROOT / name
@@ -73,6 +77,8 @@ def _contents():
         for name, (_, svg) in _plots_of(results).items():
             contents[images / name] = svg
     contents[images / "oit-fewer-layers.svg"] = plots.fewer_layers(oit_runs)
+    for results in mpi_runs:
+        contents[images / f"{results['file']}.svg"] = mpi.plot(results)
     return contents
 
 

@@ -160,19 +160,24 @@ def crossover(results):
     return _document(left + width * len(READS) + 16, top + height * len(rows) + 16, parts)
 
 
+def pair_of_panels(title, panels, across):
+    """Two panels side by side: (title, unit, lines) each, over small numbers."""
+    drawn = [_Panel(470 * index, *panel, False, across, str) for index, panel in enumerate(panels)]
+    return _document(940, 440, [_text(60, 24, title, size=15), *(part for panel in drawn for part in panel.parts)])
+
+
 def fewer_layers(all_results):
     """The nearest layers of gearworks against all layers: a line for each run."""
-    def panel(x, title, unit, member):
+    def panel(title, unit, member):
         lines = [(device_title(results),
                   [(figure["layers"], figure[member]) for figure in results.get("fewer_layers", [])
                    if figure["layers"] != "all" and figure[member] is not None], False)
                  for results in all_results]
-        return _Panel(x, title, unit, lines, False, "nearest layers", str)
+        return title, unit, lines
 
-    left = panel(0, "speed-up", "time of all layers / time", "speed_up")
-    right = panel(470, "picture", "PSNR against all layers, dB", "psnr_db")
-    return _document(940, 440, [_text(60, 24, "The nearest of up to 64 layers of gearworks, 1280×720", size=15),
-                                *left.parts, *right.parts])
+    return pair_of_panels("The nearest of up to 64 layers of gearworks, 1280×720",
+                          [panel("speed-up", "time of all layers / time", "speed_up"),
+                           panel("picture", "PSNR against all layers, dB", "psnr_db")], "nearest layers")
 
 
 def draw(results):
