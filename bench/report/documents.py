@@ -11,6 +11,7 @@ import re
 
 import figures
 import mpi
+import mpi_model
 import oit_tables
 import plots
 import ratios
@@ -67,6 +68,7 @@ def _contents():
     generated = {name: table(runs) for name, table in TABLES.items()}
     generated.update({name: table(oit_runs) for name, table in oit_tables.TABLES.items()})
     generated["mpi"] = mpi.as_markdown(mpi_runs)
+    generated["mpi_model"] = mpi_model.as_markdown()
     contents = {}
     for name in DOCUMENTS:
         path = ROOT / name
