@@ -54,11 +54,8 @@ DistributedSearch::DistributedSearch(const cellist::Device& device, const Scene&
 
 cellist::BuildReport DistributedSearch::build() {
     const auto count = static_cast<cl_uint>(points_.size());
-    const cellist::BuildReport report =
-        lists_.build(insert_, cellist::Range::padded(count), points_, count, space_.period,
-                     space_.cells_per_unit);
-    points_ = lists_.local().pack().records;
-    return report;
+    return lists_.build(insert_, cellist::Range::padded(count), points_, count, space_.period,
+                        space_.cells_per_unit);
 }
 
 std::vector<cl_uint2> DistributedSearch::found() const {

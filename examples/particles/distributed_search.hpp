@@ -19,9 +19,11 @@ public:
     DistributedSearch(const cellist::Device& device, const Scene& scene, cellist::Storage storage,
                       int cells_per_radius);
 
-    /// Puts every particle into the list of its cell, and sends it to the rank of that cell, where
-    /// it stays for the next build. Returns the report of all ranks.
+    /// Puts every particle into the list of its cell, on the rank of that cell. Returns the report of
+    /// all ranks.
     cellist::BuildReport build();
+    /// From now on, each rank inserts the particles that it has. Call it before exchange_ghosts().
+    void keep_own_points() { points_ = lists_.local().pack().records; }
     /// Copies the particles next to each block.
     void exchange_ghosts() { lists_.exchange_ghosts(); }
     /// Finds the neighbours of each rank's own particles.

@@ -121,9 +121,9 @@ Measured measure_distributed(const Options& options, const particles::Scene& sce
     Measured measured{.device = device.info().name,
                       .ranks = lists.partition().ranks(),
                       .times = {{"build", {}}, {"ghosts", {}}, {"all pairs", {}}}};
-    // The first step brings all points to their ranks; the second compiles the last kernels.
-    measured.report = search.build();
-    for (int step = 0; step < 2; ++step) {
+    measured.report = search.build();  // brings all points to their ranks
+    search.keep_own_points();
+    for (int step = 0; step < 2; ++step) {  // lets pools grow, and compiles the last kernels
         search.exchange_ghosts();
         search.find();
         search.build();

@@ -174,7 +174,7 @@ Comparison compare(const Scene& scene, std::span<const cl_uint2> found, std::siz
     for (std::size_t i = 0; i < scene.points.size(); ++i)
         if (!is_finite(scene.points[i]) && (found[i].s[0] != 0 || found[i].s[1] != 0))
             ++comparison.different;
-    if (cloud.points.empty()) return comparison;
+    if (cloud.points.empty() || sample == 0) return comparison;
 
     const Candidates candidates(cloud, scene);
     std::vector<std::uint32_t> near;
