@@ -239,13 +239,16 @@ int run(const oit::Options& options) {
     return report.record.met() ? 0 : 2;
 }
 
-#ifdef CELLIST_EXAMPLE_MPI
 bool run_on_ranks(oit::Options options) {
+#ifdef CELLIST_EXAMPLE_MPI
     support::MpiJob job("cellist-oit");
     options.share = {static_cast<std::size_t>(job.rank()), static_cast<std::size_t>(job.ranks())};
     return job.run([&] { return run(options) == 0; });
-}
+#else
+    (void)options;
+    support::refuse_mpi();
 #endif
+}
 
 }  // namespace
 
@@ -255,10 +258,8 @@ int main(int count, char** arguments) {
         const oit::Options options = oit::parse_options(count, arguments);
         if (!options.help_text.empty())
             std::cout << options.help_text;
-#ifdef CELLIST_EXAMPLE_MPI
         else if (options.mpi)
             return run_on_ranks(options);
-#endif
         else
             exit_code = run(options);
         return true;

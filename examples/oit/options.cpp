@@ -222,8 +222,8 @@ void add_output_options(support::CommandLine& line, Options& options) {
     line.add_text("--json", options.json, "write the metrics to this file", "FILE");
     line.add_number("--frames", options.frames, 1, 1'000'000,
                     "timed frames, after a warm-up; times are medians");
-    line.add_mpi(options.mpi,
-                 "share the triangles and the rows of the picture between the ranks of mpirun");
+    line.add_flag("--mpi", options.mpi,
+                  "share the triangles and the rows of the picture between the ranks of mpirun");
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ Options parse_options(int count, const char* const* arguments) {
                     "timed runs, after a warm-up; the fastest counts");
     line.add_seed(options.seed);
     line.add_device(options.device);
-    line.add_mpi(options.mpi, "divide the cells between the ranks of mpirun");
+    line.add_flag("--mpi", options.mpi, "divide the cells between the ranks of mpirun");
     options.help = line.parse(count, arguments).value_or("");
     options.check = std::min(options.check, options.points);
     return options;
@@ -180,16 +180,18 @@ bool run(const Options& options) {
     const auto make_scene = [&] {
         return particles::make_scene(options.points, neighbours, options.box, options.seed);
     };
-#ifdef CELLIST_EXAMPLE_MPI
     if (options.mpi) {
+#ifdef CELLIST_EXAMPLE_MPI
         support::MpiJob job("particles");
         return job.run([&] {
             const particles::Scene scene = make_scene();
             const Measured measured = measure_distributed(options, scene);
             return !job.is_first() || report(options, scene, measured);
         });
-    }
+#else
+        support::refuse_mpi();
 #endif
+    }
     const particles::Scene scene = make_scene();
     return report(options, scene, measure(options, scene));
 }

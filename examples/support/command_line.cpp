@@ -119,18 +119,6 @@ void CommandLine::add_device(std::string& device) {
         "D");
 }
 
-void CommandLine::add_mpi(bool& mpi, const std::string& what) {
-    add_flag("--mpi", mpi, what);
-#ifndef CELLIST_EXAMPLE_MPI
-    add_check([&mpi] {
-        if (mpi)
-            throw InputError(
-                "this program was built without MPI, so there is no --mpi: install libopenmpi-dev, "
-                "configure and build again");
-    });
-#endif
-}
-
 void CommandLine::add_check(std::function<void()> check) {
     parser_->checks.push_back(std::move(check));
 }
@@ -198,6 +186,13 @@ std::uint64_t read_bytes(const std::string& option, const std::string& text) {
         return *number << shift;
     }
     refuse(option, text, "a whole number of bytes, KiB, MiB or GiB, such as 64MiB");
+}
+
+void refuse_mpi() {
+    throw InputError(
+        "this program was built without MPI, so there is no --mpi: install libopenmpi-dev, "
+        "configure "
+        "and build again");
 }
 
 void print_error(const std::string& name, const std::string& message) {

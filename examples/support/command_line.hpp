@@ -88,8 +88,6 @@ public:
     void add_seed(std::uint32_t& seed);
     /// --device D
     void add_device(std::string& device);
-    /// --mpi, which programs that are built without MPI refuse.
-    void add_mpi(bool& mpi, const std::string& what);
 
     /// A check of values together, after all of them have been read.
     void add_check(std::function<void()> check);
@@ -113,6 +111,9 @@ private:
 /// the exit code: 1 if `program` threw, returned false because it found a difference, or printed
 /// output that could not be written; else 0.
 int run_program(const std::string& name, std::predicate auto&& program);
+
+/// Throws InputError: --mpi needs a build with MPI.
+[[noreturn]] void refuse_mpi();
 
 /// Prints the first line of `message` after the program's name.
 void print_error(const std::string& name, const std::string& message);

@@ -244,6 +244,8 @@ nlohmann::ordered_json to_json(const Report& report) {
     json["reduce"] = options.quality.reduce;
     json["memory_bytes"] = nullptr;
     if (options.memory_bytes) json["memory_bytes"] = *options.memory_bytes;
+    json["ranks"] = nullptr;
+    if (options.mpi) json["ranks"] = options.share.count;
     json["triangles"] = report.triangles;
     json["dropped"] = dropped_json(report.drops);
     json["meshes"] = meshes_json(report);

@@ -68,6 +68,7 @@ const std::vector<Row> oit_rows{
     {"--out", "--out caf\xE9.jpg", "/files/out", "caf\\xE9.jpg"},
     {"--json", "--json a.json", "/files/json", "a.json"},
     {"--frames", "--frames 7", "/frames", 7},
+    {"--mpi", "--mpi", "/ranks", 1},  // before MPI says how many
 };
 
 const std::vector<Row> tradeoff_rows{
