@@ -30,6 +30,12 @@ ListReader blending_reader(const Quality& quality, bool needs_sorted, std::strin
     return {defines.append(kernels::lists_cl), "lists.cl", "oit_resolve_lists", needs_sorted};
 }
 
+ListReader first_reader(const Quality& quality) {
+    if (quality.layers && *quality.layers <= nearest_max)
+        return blending_reader(quality, false, define("OIT_NEAREST", *quality.layers));
+    return blending_reader(quality, true);
+}
+
 // The first frame blocks until the lengths of the lists are known. Later frames are enqueued at
 // once, into a pool a quarter larger. A frame that overflows this pool is drawn again, and blocks
 // as the first frame does. So do all frames if the larger pool cannot be allocated.
@@ -233,16 +239,12 @@ const MethodRegistration fixed_method(
 
 std::string_view list_pass() { return kernels::lists_cl; }
 
-ListReader list_reader(const Quality& quality) {
-    if (quality.layers && *quality.layers <= nearest_max)
-        return blending_reader(quality, false, define("OIT_NEAREST", *quality.layers));
-    return blending_reader(quality, true);
-}
+ListReader list_reader(const Quality& quality) { return first_reader(quality); }
 
 std::unique_ptr<Method> make_list_method(FragmentSource& source,
                                          const cellist::ListsOptions& options,
                                          const std::optional<ListReader>& other_reader) {
-    const ListReader reader = other_reader ? *other_reader : list_reader(source.frame().quality);
+    const ListReader reader = other_reader ? *other_reader : first_reader(source.frame().quality);
     if (source.frame().memory_bytes && options.overflow == cellist::Overflow::grow)
         return make_list_slices(source, options, reader);
     return make_unsliced(source, options, reader, !other_reader && reader.needs_sorted);
