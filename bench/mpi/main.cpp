@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Distributed lists against lists of one device, and against the time that the bytes need alone. Run
-// by mpirun with any number of ranks; scripts/bench mpi does so, and reports. CELLIST_DEVICE names
-// the device.
+// Compares distributed lists with lists of one device, and with the time that the bytes need alone.
+// scripts/bench mpi runs it with several numbers of ranks, and reports. CELLIST_DEVICE names the
+// device.
 #include <filesystem>
 #include <iostream>
 #include <string>

@@ -14,13 +14,13 @@ namespace particles {
 /// block of cells, and copies of those next to it. All functions are collective, and block.
 class DistributedSearch {
 public:
-    /// At first, each rank has an equal part of the points, wherever they are. Refers to the device,
-    /// which must outlive it. Throws Error if there are too few cells for the ranks.
+    /// At first, each rank has an equal part of the points, wherever they are. Refers to the
+    /// device, which must outlive it. Throws Error if there are too few cells for the ranks.
     DistributedSearch(const cellist::Device& device, const Scene& scene, cellist::Storage storage,
                       int cells_per_radius);
 
-    /// Puts every particle into the list of its cell, on the rank of that cell. Returns the report of
-    /// all ranks.
+    /// Puts every particle into the list of its cell, on the rank of that cell. Returns the report
+    /// of all ranks.
     cellist::BuildReport build();
     /// From now on, each rank inserts the particles that it has. Call it before exchange_ghosts().
     void keep_own_points() { points_ = lists_.local().pack().records; }

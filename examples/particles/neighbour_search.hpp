@@ -62,8 +62,8 @@ private:
 /// Finds the neighbours of every point of a scene.
 class NeighbourSearch {
 public:
-    /// Uploads the points, builds the kernels and allocates. Refers to the device, which must outlive
-    /// it.
+    /// Uploads the points, builds the kernels and allocates. Refers to the device, which must
+    /// outlive it.
     NeighbourSearch(const cellist::Device& device, const Scene& scene, cellist::Storage storage,
                     int cells_per_radius);
 
