@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Moves records between the ranks of distributed lists: see distributed.clh.
 //
-// CELLIST_RECORD is the record. CELLIST_SENT is a struct of a record and its cell, in the layout of
-// cellist_node_T. The lists `send` have one cell for each rank.
+// CELLIST_RECORD is the record, and CELLIST_RECORD_TYPE its type. CELLIST_SENT is a struct of a
+// record and its cell, in the layout of cellist_node_T. The lists `send` have one cell for each
+// rank.
 #include <cellist/lists.clh>
 
 // Puts the records of the outbox in the order of the ranks that own their cells. `cuts` is the tree
@@ -73,8 +74,8 @@ kernel void cellist_copy_box(CELLIST_LISTS(CELLIST_SENT, send),
 //
 // One work-item a cell of the block.
 kernel void cellist_keep_own(CELLIST_LISTS(CELLIST_RECORD, lists),
-                             global const struct CELLIST_RECORD* records,
-                             global const uint* offsets, const uint4 first, const uint4 box) {
+                             global const CELLIST_RECORD_TYPE* records, global const uint* offsets,
+                             const uint4 first, const uint4 box) {
     const ulong i = get_global_id(0);
     if (i >= (ulong)box.x * box.y * box.z * box.w) return;
     const uint row = (uint)i / box.x;

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <string>
 #include <utility>
 
 #include "device/device_state.hpp"
+#include "device/view.hpp"
 
 namespace cellist::detail {
 
@@ -85,6 +87,10 @@ std::uint64_t Exchange::run(const Memory& from, const std::vector<cl_uint>& offs
     for (std::uint64_t r = 0; r < ranks; ++r)
         if (r != self) longest = std::max({longest, counts[r], arriving[r]});
     communicator_.together([&] {
+        if (places[ranks] > CELLIST_CAPACITY_NODES_MAX)
+            throw MemoryError(std::to_string(places[ranks]) +
+                              " records arrive, and a rank takes at most " +
+                              std::to_string(CELLIST_CAPACITY_NODES_MAX) + ": use more ranks");
         if (places[ranks] * element_bytes > received_.size_bytes())
             received_ = Memory(device_, places[ranks], element_bytes, "received records");
         stage(longest * element_bytes);

@@ -40,8 +40,9 @@ Kernel& ExchangeKernels::get(const std::string& name, unsigned modes) {
     Definitions all = sent_definitions();
     const std::string sent = all.records.back().name;
     all.modes = modes;
-    const std::string text = "#define CELLIST_RECORD " + record().name + "\n#define CELLIST_SENT " +
-                             sent + "\n#line 1 \"exchange.cl\"\n" +
+    const std::string text = "#define CELLIST_RECORD " + record().name +
+                             "\n#define CELLIST_RECORD_TYPE struct " + record().name +
+                             "\n#define CELLIST_SENT " + sent + "\n#line 1 \"exchange.cl\"\n" +
                              std::string(cellist_mpi::kernels::exchange_cl);
     return kernels_.emplace(name, Kernel(device_, Source{.text = text}, name, all)).first->second;
 }
