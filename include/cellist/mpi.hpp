@@ -142,9 +142,10 @@ public:
                   return cellist::Lists<T>(device, partition.local_shape(),
                                            detail::local_options(*partition.plan(), options));
               })),
-          core_("a distributed Lists object", std::make_unique<detail::DistributedCore>(
-                                                  device.state(), detail::definitions_of<T>(),
-                                                  partition.plan(), options, local_.core())) {}
+          core_("a distributed Lists object",
+                std::make_unique<detail::DistributedCore>(
+                    device.state(), detail::definitions_of_record<T>(), partition.plan(), options,
+                    local_.core())) {}
 
     /// Builds the lists: runs `kernel(lists, args...)` over `range` on each rank, with the range
     /// and the arguments of that rank. Sends the records for cells of other ranks to these ranks.
@@ -180,9 +181,12 @@ public:
     void clear() { core_->clear(); }
 
     /// Sorts every list, as cellist::Lists does. Collective, but sends no record.
-    template <class M>
-    void sort(M T::*member, Order order = Order::ascending) {
+    template <class M, std::same_as<T> R>
+    void sort(M R::*member, Order order = Order::ascending) {
         on_all_ranks([&] { local_.sort(member, order); });
+    }
+    void sort(Order order = Order::ascending) requires detail::Scalar<T> {
+        on_all_ranks([&] { local_.sort(order); });
     }
     void sort_by(const std::string& expression, Order order = Order::ascending) {
         on_all_ranks([&] { local_.sort_by(expression, order); });
@@ -191,8 +195,8 @@ public:
                  Order order = Order::ascending) {
         on_all_ranks([&] { local_.sort_by(expression, values, order); });
     }
-    template <class M>
-    void partial_sort(M T::*member, std::uint32_t count, Order order = Order::ascending) {
+    template <class M, std::same_as<T> R>
+    void partial_sort(M R::*member, std::uint32_t count, Order order = Order::ascending) {
         on_all_ranks([&] { local_.partial_sort(member, count, order); });
     }
 

@@ -13,10 +13,14 @@ namespace cellist::detail {
 namespace {
 
 std::string lists_text(const RecordType& record, const ListsOptions& options) {
-    std::string text = "lists of struct " + record.name + " {";
-    for (const RecordMember& member : record.members)
-        text += " " + member.type + " " + member.name + member.extents + ";";
-    text += " } of " + std::to_string(record.size) + " bytes in ";
+    std::string text = "lists of " + record.type();
+    if (record.is_struct) {
+        text += " {";
+        for (const RecordMember& member : record.members)
+            text += " " + member.type + " " + member.name + member.extents + ";";
+        text += " }";
+    }
+    text += " of " + std::to_string(record.size) + " bytes in ";
     if (const NearestKey* key = options.storage.nearest_key())
         text += "the storage of nearest(" + std::string(key->member) + ", " +
                 std::to_string(key->slots) + ")";

@@ -23,8 +23,8 @@ RecordType sent_type(const RecordType& record) {
     return {"cellist_sent_" + record.name,
             layout.size,
             std::max(record.alignment, sizeof(cl_uint)),
-            {{"record", "struct " + record.name, {}, 0, {}, false},
-             {"cell", "uint", {}, cell, {}, false}}};
+            {{"record", record.type(), {}, 0, {}, false}, {"cell", "uint", {}, cell, {}, false}},
+            true};
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ Kernel& ExchangeKernels::get(const std::string& name, unsigned modes) {
     const std::string sent = all.records.back().name;
     all.modes = modes;
     const std::string text = "#define CELLIST_RECORD " + record().name +
-                             "\n#define CELLIST_RECORD_TYPE struct " + record().name +
+                             "\n#define CELLIST_RECORD_TYPE " + record().type() +
                              "\n#define CELLIST_SENT " + sent + "\n#line 1 \"exchange.cl\"\n" +
                              std::string(cellist_mpi::kernels::exchange_cl);
     return kernels_.emplace(name, Kernel(device_, Source{.text = text}, name, all)).first->second;

@@ -168,3 +168,29 @@ TEST_CASE("the nearest records and an automatic storage are those of one device"
         require_same_lists(automatic.download(), all_of_one);
     });
 }
+
+TEST_CASE("records may be scalars") {
+    constexpr auto source = R"(
+#include <cellist/lists.clh>
+kernel void divide(CELLIST_LISTS(uint, numbers), uint first, uint step)
+{
+    const uint number = first + get_global_id(0) * step;
+    if (number < 1000) cellist_insert(numbers, number % 7, number);
+}
+)";
+    with_all_counts([&](MPI_Comm comm, int ranks) {
+        INFO(ranks << " ranks");
+        const mpi::Partition partition(comm, Shape{7});
+        mpi::Lists<cl_uint> numbers(device(), partition);
+        Kernel kernel(device(), source, "divide", numbers);
+        const BuildReport report =
+            numbers.build(kernel, Range(1000), static_cast<cl_uint>(partition.rank()),
+                          static_cast<cl_uint>(ranks));
+        REQUIRE(report.stored == 1000);
+        numbers.sort();
+        const HostLists<cl_uint> found = numbers.download();
+        for (std::uint64_t cell = 0; cell < 7; ++cell)
+            for (std::size_t i = 0; i < found.cell(cell).size(); ++i)
+                REQUIRE(found.cell(cell)[i] == cell + 7 * i);
+    });
+}
