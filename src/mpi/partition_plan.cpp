@@ -168,8 +168,8 @@ std::vector<std::uint64_t> PartitionPlan::layer_weights(const Block& block, std:
     return layers;
 }
 
-/// The axis along which to cut a block of about equal weights, with room for the ghost cells of both
-/// parts if it can be. The longest axis makes the shortest border. The slowest is cut first unless
+/// The axis along which to cut a block of about equal weights, with room for the ghost cells of
+/// both parts if it can be. The longest axis makes the shortest border. The slowest is cut first unless
 /// it is much shorter: blocks that divide no other axis are ranges of cells, for which an insert
 /// takes least.
 std::size_t PartitionPlan::axis_to_cut(const Block& block, std::uint64_t width) const {

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Runs a program in which one rank is killed. Fails unless the whole job ends within 10 seconds.
 #
-#   cmake -D command="mpirun;..." -P killed.cmake
-execute_process(COMMAND ${command} TIMEOUT 10 RESULT_VARIABLE result
+#   cmake -D mpiexec="mpirun;-n" -D program=... -P killed.cmake
+execute_process(COMMAND ${mpiexec} 3 "${program}" killed TIMEOUT 10 RESULT_VARIABLE result
     OUTPUT_VARIABLE output ERROR_VARIABLE output)
 message("${output}")
 if(result MATCHES "timeout")

@@ -49,8 +49,8 @@ public:
     void clear();
     [[nodiscard]] Lengths lengths() const;
     [[nodiscard]] Validation validate() const;
-    /// Copies the lists of all ranks. `allocate` takes the number of records, and returns where they
-    /// go.
+    /// Copies the lists of all ranks. `allocate` takes the number of records, and returns where
+    /// they go.
     void download(std::vector<std::uint64_t>& offsets,
                   const std::function<void*(std::uint64_t)>& allocate) const;
 
