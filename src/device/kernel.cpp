@@ -221,13 +221,17 @@ constexpr std::size_t container_parameters = 4;
 /// distribution.
 constexpr std::size_t distribution_parameters = 3;
 
+/// The parameters of a container after its first.
+std::size_t more_parameters(cl_uint modes) {
+    const bool distributed = (modes & CELLIST_DISTRIBUTED_MODE) != 0;
+    return container_parameters - 1 + (distributed ? distribution_parameters : 0);
+}
+
 /// Parameters or arguments as they are written: a container is one of them.
 std::size_t written(const auto& list, cl_uint modes) {
     const auto containers = static_cast<std::size_t>(std::count_if(
         list.begin(), list.end(), [](const auto& item) { return item.is_container; }));
-    const bool distributed = (modes & CELLIST_DISTRIBUTED_MODE) != 0;
-    return list.size() -
-           containers * (container_parameters - 1 + (distributed ? distribution_parameters : 0));
+    return list.size() - containers * more_parameters(modes);
 }
 
 /// The arguments for a program with a distributed container. Other containers get no outbox, and a
@@ -327,10 +331,10 @@ struct Kernel::Impl {
                         std::to_string(written(list, arguments.modes())) +
                         " (a container counts as one; build(kernel, ...) passes it first)");
         const detail::ArgumentCheck check(*device, definitions, name);
-        std::size_t containers = 0;
+        std::size_t before = 0;  // further parameters of containers
         for (cl_uint i = 0; i < list.size(); ++i) {
-            check(i + 1 - 3 * containers, variant.parameters[i], list[i], arguments.data(list[i]));
-            if (list[i].is_container) ++containers;
+            check(i + 1 - before, variant.parameters[i], list[i], arguments.data(list[i]));
+            if (list[i].is_container) before += more_parameters(arguments.modes());
         }
         check_local_memory(*device, name, variant, list);
         opencl([&] {
