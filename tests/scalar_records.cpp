@@ -36,8 +36,8 @@ TEST_CASE("scalars are built, sorted, packed and downloaded") {
     CELLIST_EACH_STORAGE(storage);
     const cl_device_type division =
         GENERATE(cl_device_type{CL_DEVICE_TYPE_CPU}, cl_device_type{CL_DEVICE_TYPE_GPU});
-    // Fixed lists are sorted as counted ones.
-    if (storage == Storage::fixed && division == CL_DEVICE_TYPE_GPU) return;
+    // Fixed lists are sorted as counted ones, and one storage is enough for work-groups.
+    if (storage != Storage::linked && division == CL_DEVICE_TYPE_GPU) return;
     CELLIST_RANDOM(random, 230u);
     const Inserts<cl_uint> inserts = scalars<cl_uint>(random, scalar<cl_uint>);
     Lists<cl_uint> lists(device(), {cells}, {.storage = storage});
@@ -59,7 +59,7 @@ TEST_CASE("scalars are built, sorted, packed and downloaded") {
     REQUIRE(packed.offsets.download().back() == inserts.size());
 }
 
-TEMPLATE_TEST_CASE("scalars of any size are sorted", "", cl_uchar, cl_short, cl_float, cl_long) {
+TEMPLATE_TEST_CASE("scalars of any size are sorted", "", cl_uchar, cl_float, cl_long) {
     const Storage storage = GENERATE(Storage::linked, Storage::counted);
     CELLIST_RANDOM(random, 232u);
     const Inserts<TestType> inserts = scalars<TestType>(random, scalar<TestType>);
@@ -136,7 +136,7 @@ TEST_CASE("kernels insert, read and change ids in every storage", "[oclgrind]") 
     }
 }
 
-TEMPLATE_TEST_CASE("vectors are records", "", cl_int2, cl_int4, Vector3<cl_int>) {
+TEMPLATE_TEST_CASE("vectors are records", "", cl_int2, Vector3<cl_int>) {
     const Storage storage = GENERATE(Storage::linked, Storage::counted);
     Lists<TestType> lists(device(), {2}, {.storage = storage});
     const std::string type = DeviceType<TestType>::name();
