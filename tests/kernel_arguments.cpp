@@ -126,6 +126,15 @@ TEST_CASE("an argument of the wrong type is refused, naming both types") {
     REQUIRE(contains(value, "takes uint, was given float"));
 }
 
+TEST_CASE("a refused argument has the number that it is written at, and both sizes") {
+    const Lists<Item> lists(device(), {5});
+    Kernel kernel(device(), "kernel void f(CELLIST_LISTS(Item, lists), uint n, float radius) {}",
+                  "f", lists);
+    const std::string size = error_of([&] { kernel.run(1, lists, cl_uint{1}, 0.1); }).what();
+    REQUIRE(
+        contains(size, "argument 3 'float radius': takes float of 4 bytes, was given double of 8"));
+}
+
 TEST_CASE("lists of another record are refused, naming both records") {
     Lists<Item> items(device(), {5});
     const Lists<Glow> glows(device(), {5});
