@@ -4,9 +4,7 @@
 // once, before it is timed.
 
 #include <algorithm>
-#include <array>
 #include <charconv>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
@@ -20,6 +18,7 @@
 #include <cellist/opencl.hpp>
 
 #include "files.hpp"
+#include "support/bus.hpp"
 #include "support/suite.hpp"
 
 namespace {
@@ -107,19 +106,6 @@ cellist::Device profiled(const cellist::Device& device) {
                                                CL_QUEUE_PROFILING_ENABLE)};
 }
 
-/// The PCI bus address of a device, as CUDA writes it; empty if unknown.
-std::string bus_of(const cellist::Device& device) {
-    const cl::Device opencl = device.queue().getInfo<CL_QUEUE_DEVICE>();
-    cl_device_pci_bus_info_khr at{};
-    if (clGetDeviceInfo(opencl(), CL_DEVICE_PCI_BUS_INFO_KHR, sizeof(at), &at, nullptr) !=
-        CL_SUCCESS)
-        return {};
-    std::array<char, 48> text{};
-    std::snprintf(text.data(), text.size(), "%04x:%02x:%02x.%x", at.pci_domain, at.pci_bus,
-                  at.pci_device, at.pci_function);
-    return text.data();
-}
-
 /// Removes --benchmark_out from the arguments and returns its file. Google Benchmark would write it
 /// without a check for errors.
 std::string take_out_file(int& argc, char** argv) {
@@ -167,7 +153,7 @@ int main(int argc, char** argv) try {
     benchmark::AddCustomContext("platform", info.platform);
     benchmark::AddCustomContext("driver", info.driver);
     benchmark::AddCustomContext("kind", gpu ? "gpu" : "cpu");
-    benchmark::AddCustomContext("bus", bus_of(device));
+    benchmark::AddCustomContext("bus", bench::bus_of(device));
     benchmark::AddCustomContext("compute_units", std::to_string(info.compute_units));
     benchmark::AddCustomContext("nodes", std::to_string(options.nodes));
     benchmark::AddCustomContext("occupancy", std::to_string(options.occupancy));

@@ -11,6 +11,7 @@
 #include "files.hpp"
 #include "mpi/cases.hpp"
 #include "mpi_job.hpp"
+#include "support/bus.hpp"
 
 namespace {
 
@@ -72,10 +73,15 @@ void run(const Options& options, const support::MpiJob& job) {
     const cellist::Device device = cellist::mpi::choose(MPI_COMM_WORLD);
     const cellist::DeviceInfo& info = device.info();
     const bool gpu = (info.type & CL_DEVICE_TYPE_GPU) != 0;
-    nlohmann::ordered_json results{{"device", info.name},           {"platform", info.platform},
-                                   {"driver", info.driver},         {"kind", gpu ? "gpu" : "cpu"},
-                                   {"threads", info.compute_units}, {"mpi", library()},
-                                   {"ranks", job.ranks()}};
+    nlohmann::ordered_json results{
+        {"device", info.name},
+        {"platform", info.platform},
+        {"driver", info.driver},
+        {"kind", gpu ? "gpu" : "cpu"},
+        {"threads", info.compute_units},
+        {"devices", support::devices_of_all_ranks(info.name + " " + bench::bus_of(device))},
+        {"mpi", library()},
+        {"ranks", job.ranks()}};
     for (const bench::MpiCase& one : cases(options, static_cast<std::uint64_t>(job.ranks())))
         results["figures"].push_back(bench::measure(device, MPI_COMM_WORLD, one, options.runs));
     if (!job.is_first()) return;

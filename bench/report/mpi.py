@@ -2,6 +2,7 @@
 """Results of the benchmark over MPI: a dictionary that is stored as JSON.
 
   device, driver, platform, kind ("gpu" or "cpu"), threads
+  devices      those of the run with the most ranks, with their PCI addresses
   mpi          the MPI library
   git          the measured commit
   note         a remark for readers, if there is one
@@ -28,7 +29,8 @@ BYTES_GOAL = 1.3
 
 def merge(outputs, git, note=""):
     """Results from the outputs of cellist_bench_mpi, one for each number of ranks."""
-    results = {key: value for key, value in outputs[0].items() if key not in ("ranks", "figures")}
+    results = {key: value for key, value in outputs[0].items() if key not in ("ranks", "devices", "figures")}
+    results["devices"] = outputs[-1]["devices"]
     results["git"] = git
     if note:
         results["note"] = note
@@ -110,7 +112,7 @@ def as_text(results):
     head = f"{device_title(results)}, driver {results['driver']}, {results['mpi']}, commit {results['git']}"
     marks = [f"{what}: {value}, goal {goal}: {'met' if met else 'MISSED'}"
              for what, value, goal, met in goals(results)]
-    return "\n".join([head, "", *lines, "", *marks])
+    return "\n".join([head, results["devices"], "", *lines, "", *marks])
 
 
 def as_markdown(all_results):

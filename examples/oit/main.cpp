@@ -214,6 +214,9 @@ int run(const oit::Options& options) {
     report.triangles = scene.triangles();
     oit::stand_on_floor(scene, options);
     describe(report, scene, device);
+#ifdef CELLIST_EXAMPLE_MPI
+    if (options.mpi) report.device = support::devices_of_all_ranks(report.device);
+#endif
     oit::Frame frame = oit::make_frame(scene, options);
     frame.memory_bytes = options.memory_bytes;
     frame.share = options.share;

@@ -118,7 +118,7 @@ Measured measure_distributed(const Options& options, const particles::Scene& sce
         options.device.empty() ? cellist::mpi::choose(MPI_COMM_WORLD) : choose_device(options);
     particles::DistributedSearch search(device, scene, options.storage, options.cells_per_radius);
     const cellist::mpi::Lists<particles::Particle>& lists = search.lists();
-    Measured measured{.device = device.info().name,
+    Measured measured{.device = support::devices_of_all_ranks(device.info().name),
                       .ranks = lists.partition().ranks(),
                       .times = {{"build", {}}, {"ghosts", {}}, {"all pairs", {}}}};
     measured.report = search.build();  // brings all points to their ranks

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "mpi_job.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <map>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "command_line.hpp"
 #include "input_error.hpp"
@@ -52,6 +55,21 @@ bool MpiJob::finish(End end, const std::string& error) const {
     }
     if (is_complete == 0) MPI_Abort(MPI_COMM_WORLD, 1);
     return all[0] == 0;
+}
+
+std::string devices_of_all_ranks(const std::string& name) {
+    constexpr std::size_t size = 256;
+    int ranks = 1;
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    std::vector<char> mine(size), all(size * static_cast<std::size_t>(ranks));
+    std::copy_n(name.begin(), std::min(name.size(), size - 1), mine.begin());
+    MPI_Allgather(mine.data(), size, MPI_CHAR, all.data(), size, MPI_CHAR, MPI_COMM_WORLD);
+    std::map<std::string, int> counts;
+    for (std::size_t first = 0; first < all.size(); first += size) ++counts[&all[first]];
+    std::string text;
+    for (const auto& [device, count] : counts)
+        text += (text.empty() ? "" : ", ") + std::to_string(count) + " x " + device;
+    return text;
 }
 
 }  // namespace support

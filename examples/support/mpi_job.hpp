@@ -43,6 +43,10 @@ private:
     int ranks_ = 1;
 };
 
+/// The devices of all ranks in one text, such as "2 x NVIDIA H200". `name` is that of this rank's.
+/// Collective over MPI_COMM_WORLD.
+[[nodiscard]] std::string devices_of_all_ranks(const std::string& name);
+
 }  // namespace support
 
 // ---- implementation

@@ -21,7 +21,7 @@ def figure(scaling, name, ranks, records, build_ms, sent=0, bytes_ms=0.0):
 
 
 def output(ranks, *figures):
-    return {"device": "Device", "platform": "Platform", "driver": "1", "kind": "gpu", "threads": 2, "mpi": "MPI",
+    return {"device": "Device", "platform": "Platform", "driver": "1", "kind": "gpu", "threads": 2, "devices": "2 x Device", "mpi": "MPI",
             "ranks": ranks, "figures": list(figures)}
 
 
