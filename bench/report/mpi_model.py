@@ -7,11 +7,12 @@ RECORD_BYTES = 16
 SENT_BYTES = 20  # a record and its cell
 OCCUPANCY = 16  # records in a cell
 COPIES = 3  # of a foreign record: in the outbox, in the order of the ranks, and where it arrives
-PINNED = 25e9  # bytes per second from the device or to it
-EXCHANGE = 3.2e9  # bytes per second of a rank between processes of one host, by MPI_Alltoallv
-MESSAGE = 5e-6  # seconds
-FIXED = 0.5e-3  # seconds of launches, reductions and short copies in each exchange
-BUILD = 2.74e-3 / 2**26  # seconds for a record of contiguous lists on an H200
+# Of two H200 in one host, from bench/results/mpi-h200.json:
+PINNED = 55e9  # bytes per second from the device or to it
+EXCHANGE = 3.4e9  # bytes per second of a rank between processes of one host, by MPI_Alltoallv
+MESSAGE = 5e-6  # seconds; not measured
+FIXED = 0.2e-3  # seconds of launches, reductions and short copies in each exchange
+BUILD = 7.7e-3 / 2**26  # seconds for a record in a random cell of contiguous lists
 
 
 def blocks(ranks):
@@ -56,7 +57,8 @@ def cost(records, ranks, foreign=None):
         "lists_bytes": (records + ghosts) * RECORD_BYTES + records / OCCUPANCY * 4,
         "exchange_bytes": COPIES * max(sent, ghosts) * SENT_BYTES,
         "build_s": records * BUILD, "exchange_s": _transfer(sent, messages),
-        "ghosts_s": 0 if is_random else _transfer(ghosts, neighbours(ranks)),
+        # Contiguous lists are built anew with their ghost cells.
+        "ghosts_s": 0 if is_random else records * BUILD + _transfer(ghosts, neighbours(ranks)),
     }
 
 
