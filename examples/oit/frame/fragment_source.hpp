@@ -49,6 +49,12 @@ public:
         if (opaque_ && opaque_->passes) draw_opaque();
     }
 
+    /// Starts the reads that finish_or_grow() waits for: best when a frame is enqueued.
+    void read_counts() {
+        transparent_.read_counts();
+        if (opaque_ && opaque_->passes) opaque_->passes->triangles.read_counts();
+    }
+
     /// Waits until everything is drawn since prepare(). False if something had no room: its buffers
     /// have grown then, and the frame begins again at prepare().
     [[nodiscard]] bool finish_or_grow();

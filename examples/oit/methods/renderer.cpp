@@ -63,6 +63,7 @@ void Renderer::start(const AfterPass& after_pass) {
     if (lens_) lens_->cut_out(source_);
     after_pass(&PassTimes::sort_blend_ms);
 
+    source_.read_counts();
     drawn_ = device_.enqueue_marker();
     device_.queue().flush();
 }

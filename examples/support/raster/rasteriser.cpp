@@ -17,20 +17,21 @@ namespace {
 constexpr std::size_t batch_size = 64;         // RASTER_BATCH in triangle.clh
 constexpr std::size_t first_capacity = 16384;  // of the queues
 
-// What suits a device. On GPUs a work-item scans no more than tiny triangles alone, and the blocks
-// of others are shared by a work-item for each pixel; on CPUs a work-item is a loop of a thread,
-// and what it saves is the setup of triangles.
+// What suits a device. On GPUs, a work-item tests the pixels of a cell, and the work-items of a
+// group share out those that are covered. On CPUs, a work-item is a loop of a thread, and scans a
+// whole block.
 struct Tuning {
-    int small_pixels;
     int block_pixels;
     std::size_t lanes;   // of a block
     std::size_t teams;   // of lanes, in a work-group
     std::size_t groups;  // for each compute unit
 };
 
+bool is_gpu(const cellist::Device& device) { return device.info().type == CL_DEVICE_TYPE_GPU; }
+
 Tuning tuning_for(const cellist::Device& device) {
-    if (device.info().type == CL_DEVICE_TYPE_GPU) return {4, 4, 16, 4, 32};
-    return {32, 32, 1, 1, 64};
+    if (is_gpu(device)) return {8, 4, 8, 32};
+    return {32, 1, 1, 64};
 }
 
 cl_uint checked_count(std::uint64_t count, const char* what) {
@@ -83,8 +84,7 @@ std::string joined(std::initializer_list<std::string_view> parts) {
 
 std::string defines(const cellist::Device& device, const Sampling& sampling) {
     const Tuning tuning = tuning_for(device);
-    return "#define RASTER_SMALL_PIXELS " + std::to_string(tuning.small_pixels) +
-           "\n#define RASTER_BLOCK_PIXELS " + std::to_string(tuning.block_pixels) +
+    return "#define RASTER_BLOCK_PIXELS " + std::to_string(tuning.block_pixels) +
            "\n#define RASTER_LANES " + std::to_string(tuning.lanes) + "\n#define RASTER_TEAMS " +
            std::to_string(tuning.teams) + "\n#define RASTER_SAMPLES " +
            std::to_string(sampling.samples) + "\n" +
@@ -119,7 +119,7 @@ void append_batches(std::vector<RasterBatch>& batches, std::size_t instance, cl_
 // a mesh.
 std::vector<RasterBatch> in_order_for(const cellist::Device& device,
                                       std::vector<RasterBatch> batches) {
-    if (device.info().type == CL_DEVICE_TYPE_GPU) return batches;
+    if (is_gpu(device)) return batches;
     std::vector<RasterBatch> result;
     result.reserve(batches.size());
     for (const unsigned part :
@@ -136,12 +136,29 @@ cellist::Range batches_range(std::size_t batches) {
     return cellist::Range::padded(batches * batch_size, batch_size);
 }
 
-// A group for each batch; where these are too few for a GPU, of more work-items.
-cellist::Range bin_range(const cellist::Device& device, std::size_t batches) {
-    const bool few = device.info().type == CL_DEVICE_TYPE_GPU &&
-                     batches < 8 * std::size_t{device.info().compute_units};
-    const std::size_t items = few ? 4 * batch_size : batch_size;
+// Whether a group for each batch leaves some of a GPU idle.
+bool few_for_gpu(const cellist::Device& device, std::size_t batches) {
+    return is_gpu(device) && batches < 8 * std::size_t{device.info().compute_units};
+}
+
+// Larger triangles are divided into blocks. With few batches, all groups of a GPU share these.
+cl_int small_pixels_for(const cellist::Device& device, std::size_t batches) {
+    if (!is_gpu(device)) return 32;
+    return few_for_gpu(device, batches) ? 4 : 16;
+}
+
+// A group for each batch, of more work-items if there are few.
+cellist::Range batch_groups(const cellist::Device& device, std::size_t batches) {
+    const std::size_t items = few_for_gpu(device, batches) ? 4 * batch_size : batch_size;
     return cellist::Range::padded(batches * items, items);
+}
+
+// The words of raster_draw_small for pixels that wait: see draw.clh.
+std::optional<cellist::LocalMemory> waiting_pixels(const cellist::Device& device,
+                                                   std::size_t items) {
+    if (!is_gpu(device)) return {};
+    constexpr std::size_t cell_area = 16;
+    return cellist::LocalMemory{items * (cell_area + 1) * sizeof(cl_uint)};
 }
 
 cellist::Range block_range(const cellist::Device& device) {
@@ -189,8 +206,9 @@ std::string build_options(const cellist::Device& device) {
 }
 
 std::string triangle_text(const cellist::Device& device, const Sampling& sampling) {
-    return joined({defines(device, sampling), kernels::definitions_h, kernels::triangle_clh,
-                   kernels::clip_clh, kernels::pixel_clh});
+    return joined({defines(device, sampling), "#define RASTER_WIDE", kernels::definitions_h,
+                   kernels::triangle_clh, kernels::clip_clh, kernels::pixel_clh,
+                   kernels::fragment_clh});
 }
 
 SetupKernels::SetupKernels(const cellist::Device& device, const Sampling& sampling)
@@ -203,7 +221,7 @@ cellist::Source Pass::pass_source(const cellist::Device& device, const Sampling&
     return {.text = joined({defines(device, sampling),
                             edge_bits == EdgeBits::wide ? "#define RASTER_WIDE" : "",
                             kernels::definitions_h, kernels::triangle_clh, kernels::pixel_clh,
-                            source, kernels::draw_clh}),
+                            kernels::fragment_clh, source, kernels::draw_clh}),
             .file_name = name,
             .options = build_options(device)};
 }
@@ -291,16 +309,20 @@ Triangles::Triangles(const cellist::Device& device, const Projection& projection
     : device_(device),
       projection_(projection),
       batches_(device, in_order_for(device, part_of(projection.triangle_batches(chosen), share))),
-      bin_range_(bin_range(device, batches_.size())),
-      triangle_range_(batches_range(batches_.size())),
+      small_pixels_(small_pixels_for(device, batches_.size())),
+      group_range_(batch_groups(device, batches_.size())),
+      waiting_pixels_(waiting_pixels(device, group_range_.local[0])),
       block_range_(block_range(device)),
       queue_(device, first_capacity),
       blocks_(device, first_capacity),
-      counts_(device, 1) {}
+      counts_(device, 2) {
+    counts_.fill({0, 0});
+}
 
 bool Triangles::finish_or_grow() {
     if (all_fitted_) return *all_fitted_;
-    const RasterCounts counts = counted_.get().front();
+    read_counts();
+    const RasterCounts counts = counted_->get()[turn_];
     all_fitted_ = counts.triangles <= queue_.size() && counts.blocks <= blocks_.size();
     if (counts.triangles > queue_.size())
         queue_ = cellist::Buffer<RasterTriangle>(device_, counts.triangles);

@@ -74,7 +74,8 @@ struct Sampling {
 };
 
 /// The beginning of a source that loads triangles again by the numbers of their pieces, and finds
-/// the part of a pixel that they cover: see raster_load_piece in clip.clh, and pixel.clh.
+/// their fragments and the part of a pixel that they cover: see raster_load_piece in clip.clh,
+/// fragment.clh and pixel.clh.
 [[nodiscard]] std::string triangle_text(const cellist::Device& device, const Sampling& sampling);
 
 /// A kernel of the rasteriser. `uses` names the types of the pass, as in cellist::Kernel.
@@ -167,11 +168,17 @@ public:
 
     /// Puts the large triangles and their blocks into queues. Does not block.
     void bin() {
-        counts_.fill({0, 0});
-        run(projection_.kernels_.bin, bin_range_, counts_, queue_, capacity_of(queue_), blocks_,
-            capacity_of(blocks_));
-        counted_ = counts_.download_async();
+        turn_ = 1 - turn_;
+        run(projection_.kernels_.bin, group_range_, counts_, turn_, queue_, capacity_of(queue_),
+            blocks_, capacity_of(blocks_), small_pixels_);
+        counted_.reset();
         all_fitted_.reset();
+    }
+
+    /// Starts the read that finish_or_grow() waits for, which otherwise starts it. A read between
+    /// kernels makes the device wait.
+    void read_counts() {
+        if (!counted_) counted_ = counts_.download_async();
     }
 
     /// Waits for bin(). False if the queues had no room for all: they have grown then, and whoever
@@ -181,9 +188,12 @@ public:
     /// Draws with a pass whose RASTER_TARGET takes `targets`. Does not block.
     template <class... Targets>
     void draw(Pass& pass, const Targets&... targets) {
-        run(pass.small_, triangle_range_, targets...);
-        run(pass.blocks_, block_range_, targets..., counts_, queue_, capacity_of(queue_), blocks_,
-            capacity_of(blocks_));
+        if (waiting_pixels_)
+            run(pass.small_, group_range_, targets..., small_pixels_, *waiting_pixels_);
+        else
+            run(pass.small_, group_range_, targets..., small_pixels_);
+        run(pass.blocks_, block_range_, targets..., counts_, turn_, queue_, capacity_of(queue_),
+            blocks_, capacity_of(blocks_));
     }
 
     /// Runs a kernel whose last parameters are RASTER_SCENE. Does not block.
@@ -207,13 +217,15 @@ private:
     const cellist::Device& device_;
     const Projection& projection_;
     cellist::Buffer<RasterBatch> batches_;
-    cellist::Range bin_range_;
-    cellist::Range triangle_range_;
+    cl_int small_pixels_;         ///< the size up to which triangles are not divided into blocks
+    cellist::Range group_range_;  ///< a work-group for each batch
+    std::optional<cellist::LocalMemory> waiting_pixels_;  ///< of a work-group, on GPUs
     cellist::Range block_range_;
     cellist::Buffer<RasterTriangle> queue_;
     cellist::Buffer<RasterBlock> blocks_;
-    cellist::Buffer<RasterCounts> counts_;
-    cellist::Pending<std::vector<RasterCounts>> counted_;
+    cellist::Buffer<RasterCounts> counts_;  ///< of this bin() and the next, which take turns
+    cl_uint turn_ = 0;
+    std::optional<cellist::Pending<std::vector<RasterCounts>>> counted_;
     std::optional<bool> all_fitted_;  ///< into the queues at the last bin(), once it is known
 };
 

@@ -37,7 +37,8 @@ kernel void raster_transform(global const View* views, global const RasterInstan
 // Puts large triangles and the pieces of clipped ones into a queue, and the blocks of pixels that
 // they touch into another.
 //
-//   counts           entries so far, from 0; those that a queue has no room for are counted as well
+//   counts           two elements that take turns; those of the turn start at 0, and count entries
+//                    that a queue has no room for, too
 //   ..._capacity     of the queues
 
 // Work-items that look for the blocks of a triangle together. On CPUs, where a block has one
@@ -54,7 +55,7 @@ static inline uint raster_bin_team(uint triangles) {
 #define RASTER_COUNT_MAX 0x80000000u
 
 #define RASTER_BIN_QUEUES                                                                          \
-    volatile global RasterCounts *counts, global RasterTriangle *triangles,                        \
+    volatile global RasterCounts *both_counts, const uint turn, global RasterTriangle *triangles,  \
         const uint triangles_capacity, global RasterBlock *blocks, const uint blocks_capacity
 
 // Takes `wanted` entries of a queue, and returns the first.
@@ -116,12 +117,14 @@ static inline bool raster_ready(const View* view, RasterTriangle* t) {
 
 // A group a batch: a work-item a triangle, and then all work-items, of which there may be more,
 // share the triangles' blocks.
-kernel void raster_bin(RASTER_BIN_QUEUES, RASTER_SCENE) {
+kernel void raster_bin(RASTER_BIN_QUEUES, const int small_pixels, RASTER_SCENE) {
     local uint listed[RASTER_BATCH * RASTER_PIECES_MAX];  // of the queue
     local RasterTriangle near[RASTER_BATCH];              // the first of these
     local uint listed_count, unclipped, block_count, first;
     const uint item = get_local_id(0);
     if (item == 0) listed_count = unclipped = block_count = 0;
+    volatile global RasterCounts* counts = &both_counts[turn];
+    if (get_global_id(0) == 0) both_counts[1 - turn].triangles = both_counts[1 - turn].blocks = 0;
     barrier(CLK_LOCAL_MEM_FENCE);
 
     RasterTriangle t;
@@ -133,7 +136,8 @@ kernel void raster_bin(RASTER_BIN_QUEUES, RASTER_SCENE) {
         !outside_all) {
         const View view = views[instances[t.instance].eye];
         if (!outside_any) {
-            if (!raster_small(&t) && raster_ready(&view, &t)) own = atomic_inc(&unclipped);
+            if (!raster_small(&t, small_pixels) && raster_ready(&view, &t))
+                own = atomic_inc(&unclipped);
         } else {
             RasterPolygon polygon;
             raster_clip_triangle(RASTER_SCENE_PASS, &view, &t, &polygon);
