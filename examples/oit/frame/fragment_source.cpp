@@ -8,6 +8,7 @@ namespace oit {
 namespace {
 
 constexpr cl_uint no_owner = 0xFFFFFFFF;
+constexpr cl_ulong no_nearest = cl_ulong{infinity_bits} << 32 | no_owner;
 
 std::string joined(std::initializer_list<std::string_view> parts) {
     std::string text;
@@ -119,10 +120,18 @@ bool resolves_samples(const Quality& quality) {
 
 FragmentSource::Opaque::Passes::Passes(const FragmentSource& source)
     : triangles(source.device_, source.projection_, chosen(source.frame_, true)),
-      depth(source.opaque_pass(kernels::opaque_depth_cl, "opaque_depth.cl")),
-      owner(source.opaque_pass(kernels::opaque_owner_cl, "opaque_owner.cl")),
-      colour(source.opaque_pass(kernels::opaque_colour_cl, "opaque_colour.cl")),
-      owners(source.device_, source.samples()) {}
+      colour(source.opaque_colour_kernel()),
+      screen(screen_of(source.frame_, 1)) {
+    if (source.device_.info().int64_atomics) {
+        nearest = Nearest{source.opaque_pass(kernels::opaque_nearest_cl, "opaque_nearest.cl"),
+                          cellist::Buffer<cl_ulong>(source.device_, source.samples())};
+        nearest->owners.fill(no_nearest);
+    } else {
+        in_two = InTwo{source.opaque_pass(kernels::opaque_depth_cl, "opaque_depth.cl"),
+                       source.opaque_pass(kernels::opaque_owner_cl, "opaque_owner.cl"),
+                       cellist::Buffer<cl_uint>(source.device_, source.samples())};
+    }
+}
 
 FragmentSource::Opaque::Opaque(const FragmentSource& source)
     : depth_bits(source.device_, source.samples()),
@@ -171,12 +180,22 @@ void FragmentSource::draw_opaque() {
     Opaque& o = *opaque_;
     Opaque::Passes& passes = *opaque_->passes;
     passes.triangles.bin();
-    o.depth_bits.fill(infinity_bits);
-    passes.owners.fill(no_owner);
-    passes.triangles.draw(passes.depth, o.depth_bits);
-    passes.triangles.draw(passes.owner, passes.owners, o.depth_bits);
-    passes.triangles.draw(passes.colour, passes.owners, o.depth_bits, o.colour, constants_,
-                          materials_, geometry_.normals(), tints_);
+    const auto shade = [&](const auto& owners) {
+        passes.triangles.run(passes.colour, passes.screen, owners, o.depth_bits, o.colour,
+                             constants_, materials_, geometry_.normals(), tints_);
+    };
+    if (passes.nearest) {
+        auto& [pass, owners] = *passes.nearest;
+        passes.triangles.draw(pass, owners);
+        shade(owners);
+    } else {
+        auto& [depth, owner, owners] = *passes.in_two;
+        o.depth_bits.fill(infinity_bits);
+        owners.fill(no_owner);
+        passes.triangles.draw(depth, o.depth_bits);
+        passes.triangles.draw(owner, owners, o.depth_bits);
+        shade(owners);
+    }
 }
 
 void FragmentSource::set_slice(const cellist::Slice& slice) {
@@ -217,6 +236,19 @@ raster::Pass FragmentSource::opaque_pass(std::string_view source,
                         file_name, cellist::type<OitFrame>, cellist::type<Material>);
 }
 
+cellist::Kernel FragmentSource::opaque_colour_kernel() const {
+    const std::string text = with_defines({kernels::shading_clh, kernels::opaque_colour_cl});
+    return raster::make_kernel(
+        device_,
+        cellist::Source{
+            .text = raster::triangle_text(device_, sampling()) +
+                    (device_.info().int64_atomics ? "#define OIT_NEAREST_OWNERS\n" : "") +
+                    define("OIT_NO_OWNER", std::to_string(no_nearest) + "ul") + text,
+            .file_name = "opaque_colour.cl",
+            .options = raster::build_options(device_)},
+        "oit_shade_opaque", cellist::type<OitFrame>, cellist::type<Material>);
+}
+
 std::string FragmentSource::pass_text(std::string_view source) const {
     return with_defines({"#define OIT_STORES", kernels::shading_clh, kernels::fragment_clh, source,
                          kernels::surface_clh});
@@ -244,8 +276,7 @@ std::uint64_t FragmentSource::device_bytes() const {
     if (sample_image_) bytes += bytes_of(*sample_image_);
     if (!opaque_) return bytes;
     bytes += bytes_of(opaque_->depth_bits, opaque_->colour);
-    if (opaque_->passes)
-        bytes += opaque_->passes->triangles.device_bytes() + bytes_of(opaque_->passes->owners);
+    if (opaque_->passes) bytes += opaque_->passes->device_bytes();
     return bytes;
 }
 

@@ -147,12 +147,28 @@ private:
     struct Opaque {
         // Without Quality::reduce.
         struct Passes {
+            // The nearest piece in each sample, by 64-bit atomics.
+            struct Nearest {
+                raster::Pass pass;
+                cellist::Buffer<cl_ulong> owners;
+            };
+            // Without these: the least depth, then the piece that is there.
+            struct InTwo {
+                raster::Pass depth;
+                raster::Pass owner;
+                cellist::Buffer<cl_uint> owners;
+            };
             raster::Triangles triangles;
-            raster::Pass depth;
-            raster::Pass owner;
-            raster::Pass colour;
-            cellist::Buffer<cl_uint> owners;
+            std::optional<Nearest> nearest;
+            std::optional<InTwo> in_two;
+            cellist::Kernel colour;
+            cellist::Range screen;
 
+            [[nodiscard]] std::uint64_t device_bytes() const {
+                return triangles.device_bytes() +
+                       (nearest ? raster::bytes_of(nearest->owners) : 0) +
+                       (in_two ? raster::bytes_of(in_two->owners) : 0);
+            }
             explicit Passes(const FragmentSource& source);
         };
         std::optional<Passes> passes;
@@ -165,6 +181,7 @@ private:
     void draw_opaque();
     [[nodiscard]] bool draws_exactly() const { return frame_.quality.coverage == Coverage::exact; }
     [[nodiscard]] raster::Sampling sampling() const;
+    [[nodiscard]] cellist::Kernel opaque_colour_kernel() const;
     // The parts, after the macros that they name.
     [[nodiscard]] std::string with_defines(std::initializer_list<std::string_view> parts) const;
     [[nodiscard]] raster::Pass opaque_pass(std::string_view source,
