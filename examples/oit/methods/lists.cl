@@ -22,27 +22,153 @@ static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitLocatio
 #ifdef OIT_SORTED
 #define OIT_LONGER , global uint* longer
 
-// The nodes of a list in order, up to OIT_SORTED of them; returns how many. Their keys move, and
-// the nodes stay: other members matter only where keys are equal.
-static inline uint oit_sort_list(CELLIST_LISTS(OIT_NODE, fragments), uint cell, uint* nodes) {
+// Fragments of a list by key and node, up to OIT_SORTED of them. Their nodes stay in place.
+typedef struct {
     uint keys[OIT_SORTED];
+    uint nodes[OIT_SORTED];
+    uint found;
+} OitEntries;
+
+// Most fragments that are blended.
+#ifndef OIT_LAYERS
+#define OIT_LAYERS OIT_SORTED
+#endif
+
+static inline void oit_blend_node(CELLIST_LISTS(OIT_NODE, fragments), uint node,
+                                  const OitPixel* pixel, OitBlendState* blended) {
+    const OitFragment fragment = oit_unpack(&pixel->frame, cellist_get(fragments, node));
+    oit_add(blended, pixel, &fragment);
+}
+
+// Puts one more fragment in its place among the first `found`, which are in order. Other members
+// than the key matter only where keys are equal.
+static inline void oit_insert_entry(CELLIST_LISTS(OIT_NODE, fragments), OitEntries* entries,
+                                    uint found, uint key, uint node) {
+    uint* keys = entries->keys;
+    uint* nodes = entries->nodes;
+    uint at = found;
+    for (; at > 0 && key <= keys[at - 1]; --at) {
+        if (key == keys[at - 1] &&
+            !cellist_record_before(cellist_get(fragments, node),
+                                   cellist_get(fragments, nodes[at - 1]), cellist_key_key))
+            break;
+        keys[at] = keys[at - 1];
+        nodes[at] = nodes[at - 1];
+    }
+    keys[at] = key;
+    nodes[at] = node;
+}
+
+#ifdef OIT_RUN
+// Long lists are sorted in runs of OIT_RUN, in registers, by Batcher's odd-even merge sort.
+// clang-format off
+#define OIT_NETWORK(X)                                                                             \
+    X(0, 1) X(2, 3) X(4, 5) X(6, 7) X(8, 9) X(10, 11) X(12, 13) X(14, 15) X(0, 2) X(1, 3)          \
+    X(4, 6) X(5, 7) X(8, 10) X(9, 11) X(12, 14) X(13, 15) X(1, 2) X(5, 6) X(9, 10) X(13, 14)       \
+    X(0, 4) X(1, 5) X(2, 6) X(3, 7) X(8, 12) X(9, 13) X(10, 14) X(11, 15) X(2, 4) X(3, 5)          \
+    X(10, 12) X(11, 13) X(1, 2) X(3, 4) X(5, 6) X(9, 10) X(11, 12) X(13, 14) X(0, 8) X(1, 9)       \
+    X(2, 10) X(3, 11) X(4, 12) X(5, 13) X(6, 14) X(7, 15) X(4, 8) X(5, 9) X(6, 10) X(7, 11)        \
+    X(2, 4) X(3, 5) X(6, 8) X(7, 9) X(10, 12) X(11, 13) X(1, 2) X(3, 4) X(5, 6) X(7, 8) X(9, 10)   \
+    X(11, 12) X(13, 14)
+// clang-format on
+
+#define OIT_EXCHANGE(a, b) oit_exchange(&keys[a], &nodes[a], &keys[b], &nodes[b]);
+
+static inline void oit_exchange(uint* key, uint* node, uint* other_key, uint* other_node) {
+    const bool swaps = *other_key < *key;
+    const uint least = swaps ? *other_key : *key, greatest = swaps ? *key : *other_key;
+    const uint first = swaps ? *other_node : *node, second = swaps ? *node : *other_node;
+    *key = least;
+    *other_key = greatest;
+    *node = first;
+    *other_node = second;
+}
+
+static inline void oit_sort_runs(OitEntries* entries) {
+    for (uint begin = 0; begin < entries->found; begin += OIT_RUN) {
+        uint keys[OIT_RUN], nodes[OIT_RUN];
+#pragma unroll
+        for (uint i = 0; i < OIT_RUN; ++i) {
+            const bool exists = begin + i < entries->found;
+            keys[i] = exists ? entries->keys[begin + i] : CELLIST_NONE;
+            nodes[i] = exists ? entries->nodes[begin + i] : CELLIST_NONE;
+        }
+        OIT_NETWORK(OIT_EXCHANGE)
+#pragma unroll
+        for (uint i = 0; i < OIT_RUN; ++i)
+            if (begin + i < entries->found) {
+                entries->keys[begin + i] = keys[i];
+                entries->nodes[begin + i] = nodes[i];
+            }
+    }
+}
+
+// Merges the runs and blends. False where two keys are equal, because other members decide then,
+// or where a key could be none.
+static inline bool oit_blend_runs(CELLIST_LISTS(OIT_NODE, fragments), const OitEntries* entries,
+                                  const OitPixel* pixel, OitBlendState* blended) {
+    uint at[OIT_SORTED / OIT_RUN], keys[OIT_SORTED / OIT_RUN];
+#pragma unroll
+    for (uint run = 0; run < OIT_SORTED / OIT_RUN; ++run) {
+        at[run] = run * OIT_RUN;
+        keys[run] = at[run] < entries->found ? entries->keys[at[run]] : CELLIST_NONE;
+    }
+    uint previous = CELLIST_NONE;
+    for (uint layer = 0; layer < entries->found; ++layer) {
+        uint key = keys[0], first = 0, place = at[0];
+#pragma unroll
+        for (uint run = 1; run < OIT_SORTED / OIT_RUN; ++run)
+            if (keys[run] < key) {
+                key = keys[run];
+                first = run;
+                place = at[run];
+            }
+        if (key == previous || key == CELLIST_NONE) return false;
+        if (layer >= OIT_LAYERS || oit_done(blended, pixel)) break;
+        previous = key;
+        const uint next = place + 1;
+        const uint next_key =
+            next % OIT_RUN != 0 && next < entries->found ? entries->keys[next] : CELLIST_NONE;
+#pragma unroll
+        for (uint run = 0; run < OIT_SORTED / OIT_RUN; ++run)
+            if (run == first) {
+                at[run] = next;
+                keys[run] = next_key;
+            }
+        oit_blend_node(CELLIST_PASS(fragments), entries->nodes[place], pixel, blended);
+    }
+    return true;
+}
+#endif
+
+// Blends a list nearest first.
+static inline void oit_blend_list(CELLIST_LISTS(OIT_NODE, fragments), uint cell,
+                                  OitEntries* entries, const OitPixel* pixel,
+                                  OitBlendState* blended) {
     uint found = 0;
     cellist_for_each(fragments, cell, node) {
         if (found == OIT_SORTED) break;
         const uint key = cellist_get(fragments, node).key;
-        uint at = found++;
-        for (; at > 0 && key <= keys[at - 1]; --at) {
-            if (key == keys[at - 1] &&
-                !cellist_record_before(cellist_get(fragments, node),
-                                       cellist_get(fragments, nodes[at - 1]), cellist_key_key))
-                break;
-            keys[at] = keys[at - 1];
-            nodes[at] = nodes[at - 1];
-        }
-        keys[at] = key;
-        nodes[at] = node;
+#ifdef OIT_RUN
+        entries->keys[found] = key;
+        entries->nodes[found++] = node;
+#else
+        oit_insert_entry(CELLIST_PASS(fragments), entries, found++, key, node);
+#endif
     }
-    return found;
+    entries->found = found;
+#ifdef OIT_RUN
+    // Insertion is faster for few.
+    if (found > OIT_RUN / 2) {
+        oit_sort_runs(entries);
+        if (oit_blend_runs(CELLIST_PASS(fragments), entries, pixel, blended)) return;
+        *blended = oit_blend_state();
+    }
+    for (uint i = 1; i < found; ++i)
+        oit_insert_entry(CELLIST_PASS(fragments), entries, i, entries->keys[i], entries->nodes[i]);
+#endif
+    for (uint i = 0; i < min(found, (uint)OIT_LAYERS) && !oit_done(blended, pixel); ++i)
+        oit_blend_node(CELLIST_PASS(fragments), entries->nodes[i], pixel, blended);
 }
 #else
 #define OIT_LONGER
@@ -54,16 +180,9 @@ kernel void oit_resolve_lists(CELLIST_LISTS(OIT_NODE, fragments) OIT_LONGER, OIT
     const uint cell = cellist_cell3(fragments, pixel.x, pixel.y, pixel.eye);
     OitBlendState blended = oit_blend_state();
 #ifdef OIT_SORTED
-    uint nodes[OIT_SORTED];
-    uint found = oit_sort_list(CELLIST_PASS(fragments), cell, nodes);
-    if (found == OIT_SORTED) *longer = 1;
-#ifdef OIT_LAYERS
-    found = min(found, (uint)OIT_LAYERS);
-#endif
-    for (uint i = 0; i < found && !oit_done(&blended, &pixel); ++i) {
-        const OitFragment fragment = oit_unpack(&pixel.frame, cellist_get(fragments, nodes[i]));
-        oit_add(&blended, &pixel, &fragment);
-    }
+    OitEntries entries;
+    oit_blend_list(CELLIST_PASS(fragments), cell, &entries, &pixel, &blended);
+    if (entries.found == OIT_SORTED) *longer = 1;
 #elif defined(OIT_NEAREST)
     struct OIT_NODE nearest[OIT_NEAREST];
     const uint found = cellist_nearest(fragments, cell, key, OIT_NEAREST, nearest);

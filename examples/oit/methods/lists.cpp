@@ -15,10 +15,24 @@ namespace {
 // more, sorting the lists is faster.
 constexpr std::uint32_t nearest_max = 16;
 
+bool is_gpu(const cellist::DeviceInfo& device) { return (device.type & CL_DEVICE_TYPE_GPU) != 0; }
+
 // The longest lists that the reader sorts itself; longer ones are sorted before. On GPUs, a sort of
 // its own waits for the host in between. On processors, it is faster from some 64 nodes on.
 std::uint32_t sorted_in_reader_max(const cellist::DeviceInfo& device) {
-    return (device.type & CL_DEVICE_TYPE_GPU) != 0 ? 127 : 63;
+    return is_gpu(device) ? 127 : 63;
+}
+
+// The macros of a reader that sorts lists of up to `longest` fragments. GPUs sort in runs where
+// lists are long. Equal keys, as those of few bits often are, make them sort twice.
+std::string sorting_defines(const cellist::DeviceInfo& device, const NodeLayout& layout,
+                            std::uint64_t longest) {
+    constexpr std::uint64_t run = 16;
+    constexpr std::uint64_t in_runs_min = 64;
+    std::string defines = define("OIT_SORTED", std::bit_ceil(longest + 1));
+    if (is_gpu(device) && has_float_depth(layout.format) && longest >= in_runs_min)
+        defines += define("OIT_RUN", run);
+    return defines;
 }
 
 std::string layers_define(const Quality& quality) {
@@ -152,7 +166,8 @@ private:
         }
         if (may_sort_in_reader_ && longest <= sorted_in_reader_max(source_.device().info()))
             unsorted_reader_.emplace(kernel_of(blending_reader(
-                source_.frame().quality, false, define("OIT_SORTED", std::bit_ceil(longest + 1)))));
+                source_.frame().quality, false,
+                sorting_defines(source_.device().info(), source_.layout(), longest))));
         else
             unsorted_reader_.reset();
         longer_.fill(0);
