@@ -70,6 +70,8 @@ public:
     /// - the ranks name different shapes or options; the message has both.
     /// - the product of `blocks` is not the number of ranks.
     /// - there are more layers of ghost cells than cells along an axis of a block.
+    /// - ghost cells on both sides would meet: along an axis that is periodic and divided, the
+    ///   shape needs more than twice as many cells as layers.
     /// Throws Error if MPI is not initialised, or has a lower thread level than
     /// MPI_THREAD_FUNNELED, or if another thread than the main thread calls under that level.
     Partition(MPI_Comm comm, const Shape& shape, const PartitionOptions& options = {});
@@ -122,7 +124,8 @@ private:
 ///
 /// After a sort, the lists are the same to the bit for any number of ranks.
 ///
-/// Calls that are collective run on all ranks of the communicator, in the same order. If one rank
+/// Calls that are collective run on all ranks of the communicator, in the same order and, but for
+/// ranges, kernels and their arguments, with the same arguments. If one rank
 /// fails, all ranks throw the same error, whose message names that rank. An OpenClError's call()
 /// then names the rank, too. All functions throw what those of cellist::Lists throw.
 ///

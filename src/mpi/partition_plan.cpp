@@ -15,9 +15,12 @@ namespace {
 
 constexpr std::array axis_names{"x", "y", "z", "w"};
 
+std::string layers_text(std::uint64_t layers) {
+    return std::to_string(layers) + (layers == 1 ? " layer" : " layers") + " of ghost cells";
+}
+
 std::string partition_text(const Shape& shape, const PartitionOptions& options) {
-    std::string text = "the shape " + shape.to_string() + " with " +
-                       std::to_string(options.ghosts) + " layers of ghost cells";
+    std::string text = "the shape " + shape.to_string() + " with " + layers_text(options.ghosts);
     std::string periodic, blocks;
     for (std::size_t axis = 0; axis < 4; ++axis) {
         if (options.periodic[axis])
@@ -230,14 +233,12 @@ void PartitionPlan::choose_ghosts() {
         if (least == shape_.extent(axis)) continue;
         ghosts_[axis] = layers;
         if (layers > least)
-            throw Error(std::to_string(layers) +
-                        " layers of ghost cells are wider than the block "
-                        "of rank " +
+            throw Error(layers_text(layers) + " would be wider than the block of rank " +
                         std::to_string(least_rank) + ", which has " + std::to_string(least) +
                         " cells along " + axis_names[axis] +
                         ": use fewer ranks, fewer layers or other blocks");
         if (options_.periodic[axis] && layers > 0 && 2 * layers >= shape_.extent(axis))
-            throw Error(std::to_string(layers) + " layers of ghost cells reach around the " +
+            throw Error(layers_text(layers) + " on both sides would meet around the " +
                         std::to_string(shape_.extent(axis)) + " cells along " + axis_names[axis] +
                         ", which is periodic and divided: use fewer layers, or blocks that do not "
                         "divide this axis");

@@ -83,11 +83,12 @@ TEST_CASE("a partition is refused if its blocks do not fit") {
             "must be the number of ranks");
         const std::string wide = common_error(
             comm, [&] { const mpi::Partition partition(comm, Shape{12}, {.ghosts = 13}); });
-        if (ranks > 1) contains(wide, "13 layers of ghost cells are wider than the block of rank");
+        if (ranks > 1)
+            contains(wide, "13 layers of ghost cells would be wider than the block of rank");
         const std::string around = common_error(comm, [&] {
             const mpi::Partition partition(comm, Shape{2}, {.ghosts = 1, .periodic = {true}});
         });
-        if (ranks > 1) contains(around, "reach around the 2 cells along x");
+        if (ranks > 1) contains(around, "meet around the 2 cells along x");
         contains(common_error(comm,
                               [&] {
                                   const std::size_t weights = rank_of(comm) == ranks - 1 ? 3 : 4;
