@@ -122,7 +122,9 @@ void Communicator::agree(const std::exception_ptr& error) const {
     text.log.resize(failure.log_bytes);
     broadcast(text.text.data(), text.text.size(), failed);
     broadcast(text.log.data(), text.log.size(), failed);
-    text.text.insert(0, "rank " + std::to_string(failed) + ": ");
+    const std::string name = "rank " + std::to_string(failed) + ": ";
+    // A collective call within another one has named the rank.
+    if (!text.text.starts_with(name)) text.text.insert(0, name);
     raise(failure, text);
 }
 

@@ -110,7 +110,9 @@ PartitionPlan::PartitionPlan(MPI_Comm comm, const Shape& shape, const PartitionO
         options_.blocks = grid;
         cut_into_grid({}, grid);
     } else {
-        cut_in_two(whole(shape), 0, ranks, weights != nullptr ? &sums : nullptr);
+        // Without any weight, blocks have about equal size.
+        const bool weighs = std::any_of(sums.begin(), sums.end(), [](auto w) { return w > 0; });
+        cut_in_two(whole(shape), 0, ranks, weighs ? &sums : nullptr);
     }
     choose_ghosts();
 }

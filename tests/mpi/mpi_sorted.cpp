@@ -112,6 +112,16 @@ TEST_CASE("a balanced partition has about as many records on each rank") {
     });
 }
 
+TEST_CASE("a partition without any weight has blocks of about equal size") {
+    const Shape shape{48};
+    with_all_counts([&](MPI_Comm comm, int ranks) {
+        const auto partition =
+            mpi::Partition::balanced(comm, shape, std::vector<std::uint64_t>(shape.cells(), 0));
+        for (int rank = 0; rank < ranks; ++rank)
+            REQUIRE(partition.block(rank).cells() >= 48 / static_cast<std::uint64_t>(ranks) - 1);
+    });
+}
+
 TEST_CASE("records travel in any number of messages") {
     CELLIST_RANDOM(random, 17u);
     const Shape shape{12, 9};
