@@ -194,7 +194,7 @@ public:
     /// slice's cells; all other lists are empty. `read` cannot build the lists: that throws Error.
     /// At the end all lists are empty.
     ///
-    /// Throws OverflowError if a single list does not fit and the policy is not to drop. Throws
+    /// Throws OverflowError if a single list does not fit, except under Overflow::drop. Throws
     /// Error if the kernels insert other records than they counted. Throws what `insert` or `read`
     /// throws. The counts take 8 bytes per cell on the device until the first slice. Blocks.
     BuildReport build_slices(std::invocable auto&& insert,
@@ -322,9 +322,9 @@ public:
         core_->write_offsets(offsets.cl());
         return offsets;
     }
-    /// Returns the number of cells by the length of their list, `bins` elements in device memory.
-    /// The last one also counts all longer lists. Throws Error if there are no bins. Does not
-    /// block.
+    /// Returns a histogram of the lengths, `bins` elements in device memory: element n is the number
+    /// of cells whose list has n records. The last element also counts all longer lists. Throws
+    /// Error if `bins` is 0. Does not block.
     [[nodiscard]] Buffer<cl_uint> device_histogram(std::uint32_t bins) const {
         if (bins == 0) throw Error("a histogram needs at least one bin");
         Buffer<cl_uint> histogram(core_->device(), bins);
@@ -370,18 +370,18 @@ public:
                                                                  detail::member_name(member));
     }
 
-    /// Finds the neighbours of every record: the other records up to a distance, in the cells around
-    /// the record's own. An index is a record's place in pack(), or the value of the member `index`.
-    /// Places stay the same until the lists are built or sorted. Pass the last result as `reuse` to
-    /// keep its buffers.
+    /// Finds the neighbours of every record: the other records up to a distance, in the cells
+    /// around the record's own. An index is a record's place in pack(), or the value of the member
+    /// `index`. Places stay the same until the lists are built or sorted. Pass the last result as
+    /// `reuse` to keep its buffers.
     ///
     ///     auto found = particles.neighbours({.distance = "distance(record.at, other.at)",
     ///                                        .radius = 0.1f});
     ///
-    /// On GPUs, and in storages other than Storage::counted, takes another 4 bytes of device memory
-    /// a record, or a copy of all records. Blocks until the number of pairs is known, and while it
-    /// compiles kernels. Throws Error for an invalid expression or value. Throws MemoryError if
-    /// there are more than 2^32 - 1 pairs.
+    /// Takes 4 bytes of device memory per record for counts, and another 4 on GPUs. Storages other
+    /// than Storage::counted also need a copy of all records. Blocks until the number of pairs is
+    /// known, and while it compiles kernels. Throws Error for an invalid expression or value.
+    /// Throws MemoryError if there are more than 2^32 - 1 pairs.
     [[nodiscard]] Neighbours neighbours(const NeighbourOptions& options,
                                         Neighbours reuse = {}) const {
         detail::find_neighbours(*core_, options, "", reuse);
@@ -466,7 +466,7 @@ private:
         (arguments.add(args), ...);
         kernel.enqueue(range, arguments);
     }
-    /// A function that does the same, with the arguments of now.
+    /// Returns a function that does the same later, with the present values of the arguments.
     template <class... Args>
     auto run_later(Kernel& kernel, const Range& range, const Args&... args) {
         detail::Arguments rest;

@@ -3,7 +3,7 @@
 // cellist::mpi: lists whose cells are distributed over the ranks of an MPI program.
 //
 // Link with cellist::mpi. The program initialises MPI itself, with MPI_Init_thread and at least
-// MPI_THREAD_FUNNELED: drivers of processors use threads. docs/mpi.md is the guide.
+// MPI_THREAD_FUNNELED, because OpenCL drivers use threads. docs/mpi.md is the guide.
 
 #include <array>
 #include <concepts>
@@ -30,20 +30,22 @@
 
 namespace cellist::mpi {
 
-/// Returns a device for this rank. The ranks of a host take its GPUs in turn, so more ranks than
-/// GPUs share them. Without a GPU, or if the environment variable CELLIST_DEVICE is set, returns
-/// Device::choose(). Collective. Throws what Device::choose() throws, on all ranks.
+/// Returns a device for this rank. The ranks of a host take its GPUs in turn; if there are more
+/// ranks than GPUs, ranks share GPUs. Without a GPU, or if the environment variable CELLIST_DEVICE
+/// is set, returns Device::choose(). Collective. Blocks. Throws what Device::choose() throws, on
+/// all ranks. Throws Error if MPI is not ready: see Partition.
 [[nodiscard]] CELLIST_API Device choose(MPI_Comm comm);
 
-/// How cells are divided.
+/// How a Partition divides its cells.
 struct PartitionOptions {
-    /// Layers of ghost cells around a block, along each axis that is divided. They hold copies of
-    /// the records of other ranks after Lists::exchange_ghosts().
+    /// The number of layers of ghost cells around a block, along each axis that is divided. After
+    /// Lists::exchange_ghosts(), they hold copies of the records of other ranks.
     std::uint32_t ghosts = 0;
     /// The axes that wrap around, as in ListsOptions::periodic.
     std::array<bool, 4> periodic = {};
     /// The number of blocks along each axis; their product is the number of ranks. Rank 0 has the
-    /// first block, and ranks count along x first. All 0: chosen for short borders.
+    /// first block, and ranks count along x first. All 0: the library chooses blocks with short
+    /// borders. If only some are 0, they count as 1.
     std::array<std::uint32_t, 4> blocks = {};
 };
 
@@ -59,28 +61,33 @@ struct Block {
 };
 
 /// The cells of a shape, divided into one block for each rank. If there are more ranks than cells,
-/// some blocks are empty. Copies share their content. Every constructor is collective over the
-/// communicator.
+/// some blocks are empty. Copies share their content.
+///
+/// Constructors and balanced() are collective and block. So is the destruction of the last copy,
+/// which frees the communicator; lists keep a copy. All other functions are local.
 class CELLIST_API Partition {
 public:
-    /// Divides the cells into blocks of about equal size. Duplicates `comm`: no message of the
-    /// library meets one of the program.
+    /// Divides the cells into blocks of about equal size. Duplicates `comm`, so that the messages
+    /// of the library and of the program do not mix.
     ///
     /// Throws Error on all ranks if:
-    /// - the ranks name different shapes or options; the message has both.
+    /// - the ranks pass different shapes or options; the message has both.
     /// - the product of `blocks` is not the number of ranks.
-    /// - there are more layers of ghost cells than cells along an axis of a block.
-    /// - ghost cells on both sides would meet: along an axis that is periodic and divided, the
-    ///   shape needs more than twice as many cells as layers.
-    /// Throws Error if MPI is not initialised, or has a lower thread level than
-    /// MPI_THREAD_FUNNELED, or if another thread than the main thread calls under that level.
+    /// - a block has fewer cells along a divided axis than there are layers of ghost cells.
+    /// - a divided axis is periodic and not longer than twice the layers of ghost cells.
+    ///
+    /// Throws Error if MPI is not ready: it is not initialised, is finalised, or has a lower thread
+    /// level than MPI_THREAD_FUNNELED. Under that level only the main thread may call. Throws Error
+    /// if `comm` is MPI_COMM_NULL or an intercommunicator.
     Partition(MPI_Comm comm, const Shape& shape, const PartitionOptions& options = {});
 
-    /// Divides the cells into blocks of about equal weight. `weights` has a number for each cell,
-    /// e.g. the lengths of the lists of a former build. The weights of all ranks are added, so
-    /// each rank can pass those of its own records. Cuts lie between layers of cells: one layer is
-    /// never divided. Throws what the constructor throws, and Error if the number of weights is not
-    /// the number of cells. Ignores PartitionOptions::blocks.
+    /// Divides the cells into blocks of about equal weight. `weights` has a number for each cell of
+    /// the whole shape, e.g. the lengths of the lists of an earlier build. The library adds the
+    /// weights of all ranks, so each rank can pass those of its own records; the sums must fit into
+    /// 64 bits. Each cut is a plane between two layers of a block, so blocks differ by up to about
+    /// the weight of a layer. Takes 8 bytes of host memory per cell. Throws what the constructor
+    /// throws, and Error if the number of weights is not the number of cells. Ignores
+    /// PartitionOptions::blocks.
     [[nodiscard]] static Partition balanced(MPI_Comm comm, const Shape& shape,
                                             const std::vector<std::uint64_t>& weights,
                                             const PartitionOptions& options = {});
@@ -89,13 +96,15 @@ public:
     [[nodiscard]] const PartitionOptions& options() const;
     [[nodiscard]] int rank() const;
     [[nodiscard]] int ranks() const;
-    /// Returns this rank's own cells, or those of another rank.
+    /// Returns this rank's own cells, or those of another rank. Throws Error if there is no such
+    /// rank.
     [[nodiscard]] const Block& block() const { return block(rank()); }
     [[nodiscard]] const Block& block(int rank) const;
-    /// Returns the rank that owns a cell, 0 ... cells() - 1. Throws Error for other cells.
+    /// Returns the rank that owns a cell of the shape. Throws Error for a cell outside the shape.
     [[nodiscard]] int owner(std::uint64_t cell) const;
 
-    /// Returns the layers of ghost cells along each axis: 0 along axes that are not divided.
+    /// Returns the number of layers of ghost cells along each axis: 0 along axes that are not
+    /// divided.
     [[nodiscard]] std::array<std::uint64_t, 4> ghosts() const;
     /// Returns the shape of Lists::local(): the block, and the layers of ghost cells on both sides.
     [[nodiscard]] Shape local_shape() const;
@@ -117,26 +126,31 @@ private:
 
 /// A list of records T for each cell of a shape, in the device memory of all ranks.
 ///
-/// Kernels are those for cellist::Lists, and all cells are those of the whole shape. An insert on
-/// any rank adds a record to the list of any cell: the build sends it to the rank that owns the
-/// cell. A kernel that reads finds the lists of its rank's block, and of the ghost cells after
+/// Kernels are those for cellist::Lists, and name cells of the whole shape. An insert on any rank
+/// adds a record to the list of any cell: the build sends it to the rank that owns the cell. A
+/// kernel that reads finds the lists of its rank's block, and of the ghost cells after
 /// exchange_ghosts(); all other lists are empty.
 ///
-/// After a sort, the lists are the same to the bit for any number of ranks.
+/// After sort() or sort_by(), the lists are the same to the bit for any number of ranks, unless
+/// records were dropped.
 ///
-/// Calls that are collective run on all ranks of the communicator, in the same order and, but for
-/// ranges, kernels and their arguments, with the same arguments. If one rank
-/// fails, all ranks throw the same error, whose message names that rank. An OpenClError's call()
-/// then names the rank, too. All functions throw what those of cellist::Lists throw.
+/// Make collective calls on all ranks of the communicator, in the same order, with the same
+/// arguments but for kernels, ranges and what kernels take. Each blocks until the other ranks have
+/// made it, too. If a rank fails, all ranks throw the same error. With several
+/// ranks, its message (or call() of an OpenClError) begins with the number of the failed rank, and
+/// an exception of a type that the library does not have becomes Error. All functions throw what
+/// those of cellist::Lists throw.
 ///
 /// Owned by value: movable, not copyable. Using moved-from Lists throws Error.
 template <class T>
 class Lists {
 public:
-    /// Makes empty lists on this rank's device. Collective. Throws Error on all ranks if the ranks
-    /// name different records, storages or policies; the message has both. The capacity, slots and
-    /// the budget of the options hold for the lists of each rank; the outbox and the messages take
-    /// further memory. The periodic axes are those of the partition.
+    /// Makes empty lists on this rank's device. Collective. The capacity, slots and budget of the
+    /// options apply to the lists of each rank. The outbox and the messages take further memory.
+    ///
+    /// Throws Error on all ranks if the ranks pass different records, storages or policies; the
+    /// message has both. The partition says which axes are periodic: throws Error if the options
+    /// name other axes.
     Lists(const Device& device, const Partition& partition, const ListsOptions& options = {})
         : partition_(partition),
           local_(detail::on_all_ranks<cellist::Lists<T>>(
@@ -151,12 +165,13 @@ public:
                     local_.core())) {}
 
     /// Builds the lists: runs `kernel(lists, args...)` over `range` on each rank, with the range
-    /// and the arguments of that rank. Sends the records for cells of other ranks to these ranks.
-    /// Collective. Returns the sums of all ranks' reports: `attempted == stored + dropped +
+    /// and the arguments of that rank. Sends records for cells of other ranks to those ranks.
+    /// Collective. Blocks. Returns the sums of all ranks' reports: `attempted == stored + dropped +
     /// rejected` holds exactly, and `passes` is the greatest number of any rank.
     ///
-    /// The overflow policy works on each rank's pool. Under Overflow::stop, a demand that does not
-    /// fit on one rank makes all ranks throw its OverflowError, and all lists are empty.
+    /// The overflow policy applies to each rank's pool. If a rank throws OverflowError, all ranks
+    /// do. Throws MemoryError if more records arrive at a rank than a pool can hold. After any
+    /// exception, the lists of all ranks are empty.
     template <class... Args>
     BuildReport build(Kernel& kernel, const Range& range, const Args&... args) {
         return core_->build([&] {
@@ -171,19 +186,20 @@ public:
     BuildReport build(std::invocable auto&& insert) { return core_->build(std::ref(insert)); }
 
     /// Copies the records of the cells next to each rank's block into its ghost cells. Collective.
-    /// Returns the sums of all ranks' reports of an append: `existing` are the records of the
-    /// lists, and `attempted` the copies. Throws Error without ghost cells. After another
-    /// exception, all lists are empty.
+    /// Blocks. Returns the sums of all ranks' reports of an append: `existing` counts the records
+    /// before it, and `attempted` the copies. Throws Error if PartitionOptions::ghosts is 0. After
+    /// another exception, all lists are empty.
     ///
-    /// The next build or exchange removes the copies. A sort before it does not order the ghost
-    /// cells. The first exchange after a build takes the time of an append: see
-    /// cellist::Lists::append(). Later ones also build the rank's own lists anew.
+    /// The next build or exchange removes the copies. The order of the lists is undefined
+    /// afterwards, so sort after the exchange. The first exchange after a build takes the time of
+    /// an append: see cellist::Lists::append(). A later one also builds the rank's own lists anew.
     BuildReport exchange_ghosts() { return core_->exchange_ghosts(); }
 
     /// Empties the lists. Collective.
     void clear() { core_->clear(); }
 
-    /// Sorts every list, as cellist::Lists does. Collective, but sends no record.
+    /// Sorts every list of all ranks, ghost cells included, as cellist::Lists does. Collective, but
+    /// sends no records. Blocks.
     template <class M, std::same_as<T> R>
     void sort(M R::*member, Order order = Order::ascending) {
         on_all_ranks([&] { local_.sort(member, order); });
@@ -205,10 +221,12 @@ public:
 
     /// Measures the lists of all ranks; ghost cells do not count. Collective. Blocks.
     [[nodiscard]] Lengths lengths() const { return core_->lengths(); }
-    /// Checks the lists of all ranks, as cellist::Lists does. Collective. Blocks.
+    /// Checks the lists of all ranks, as cellist::Lists does. Returns the sums of all ranks.
+    /// Collective. Blocks.
     [[nodiscard]] Validation validate() const { return core_->validate(); }
 
-    /// Copies the lists of all ranks to the host memory of each rank. Collective. Blocks.
+    /// Copies the lists of all ranks, without ghost cells, to host memory of each rank, which must
+    /// have room for all records. Collective. Blocks.
     [[nodiscard]] HostLists<T> download() const {
         std::vector<std::uint64_t> offsets;
         std::vector<T> records;
@@ -219,9 +237,9 @@ public:
         return HostLists<T>(shape(), std::move(offsets), std::move(records));
     }
 
-    /// Returns this rank's lists, of partition().local_shape(): for neighbours(), nearest(), pack()
-    /// and all other calls that read. Its cells are those of that shape. Partition::cell() and
-    /// Partition::local_cell() convert them.
+    /// Returns this rank's lists, for neighbours(), nearest(), pack() and all other calls that
+    /// read. They have the shape partition().local_shape(), with ghost cells. Partition::cell() and
+    /// Partition::local_cell() convert between its cells and those of the whole shape.
     [[nodiscard]] const cellist::Lists<T>& local() const { return local_; }
     [[nodiscard]] const Partition& partition() const { return partition_; }
     [[nodiscard]] const Shape& shape() const { return partition_.shape(); }
