@@ -322,9 +322,9 @@ public:
         core_->write_offsets(offsets.cl());
         return offsets;
     }
-    /// Returns a histogram of the lengths, `bins` elements in device memory: element n is the number
-    /// of cells whose list has n records. The last element also counts all longer lists. Throws
-    /// Error if `bins` is 0. Does not block.
+    /// Returns a histogram of the lengths, `bins` elements in device memory. Element n is the
+    /// number of cells whose list has n records. The last element also counts all longer lists.
+    /// Throws Error if `bins` is 0. Does not block.
     [[nodiscard]] Buffer<cl_uint> device_histogram(std::uint32_t bins) const {
         if (bins == 0) throw Error("a histogram needs at least one bin");
         Buffer<cl_uint> histogram(core_->device(), bins);
