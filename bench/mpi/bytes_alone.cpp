@@ -34,7 +34,7 @@ BytesAlone::Side::Side(const cellist::Device& device, const std::vector<std::uin
     pinned = cl::Buffer(device.context(), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, bytes);
     on_host =
         device.queue().enqueueMapBuffer(pinned, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, bytes);
-    // Pages exist before they are timed.
+    // Touches all pages before the timed runs.
     device.queue().enqueueFillBuffer(on_device, cl_uint{0}, 0, bytes / 4 * 4);
     device.queue().enqueueReadBuffer(on_device, CL_TRUE, 0, bytes, on_host);
 }

@@ -12,12 +12,12 @@
 namespace bench {
 
 /// Moves records from the device of each rank to the devices of all others, and does nothing else:
-/// a copy to pinned memory, MPI_Alltoallv, and a copy from pinned memory. No exchange through host
-/// memory moves these records faster in three steps.
+/// a copy to pinned memory, MPI_Alltoallv, and a copy from pinned memory. The steps do not overlap.
+/// The times of an exchange are compared with these.
 class BytesAlone {
 public:
     /// Collective. `sent[r]` is the number of records of `record_bytes` bytes that this rank sends
-    /// to rank r. Throws Error if one of the sums exceeds 2^31 - 1 records.
+    /// to rank r. Throws Error if this rank sends or receives more than 2^31 - 1 records in all.
     BytesAlone(const cellist::Device& device, MPI_Comm comm, std::vector<std::uint64_t> sent,
                std::size_t record_bytes);
     ~BytesAlone();
@@ -37,7 +37,7 @@ public:
     [[nodiscard]] std::uint64_t received_bytes() const { return incoming_.bytes; }
 
 private:
-    // Records of all ranks, on the device and in pinned memory.
+    // The records to or from all ranks, on the device and in pinned memory.
     struct Side {
         std::vector<int> counts;
         std::vector<int> offsets;

@@ -50,14 +50,14 @@ MpiInput input_of(const MpiCase& one, const cellist::mpi::Partition& partition) 
     return input;
 }
 
-// As many records, in the rank's own cells.
+// The same number of records, all in the rank's own cells.
 MpiInput without_foreign(MpiInput input) {
     if (input.kind == MPI_RANDOM) input.kind = MPI_PARTICLES;
     for (cl_uint& step : input.step) step = 0;
     return input;
 }
 
-// The same for a container of these cells.
+// The same input for a container that has only the rank's own cells.
 MpiInput in_own_shape(MpiInput input) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         input.extent[axis] = input.own[axis];
@@ -83,7 +83,7 @@ std::uint64_t sum_of(MPI_Comm comm, std::uint64_t value) {
     return value;
 }
 
-// Times of the slowest rank by name, in milliseconds: one of each run.
+// The times of the slowest rank in milliseconds, by name: one for each run.
 class SlowestTimes {
 public:
     SlowestTimes(const cellist::Device& device, MPI_Comm comm) : device_(device), comm_(comm) {}
@@ -98,7 +98,7 @@ public:
         add(name, support::measure_ms(device_, work));
     }
     void clear() { times_.clear(); }
-    // Adds the median, the least and the greatest of each name to a figure.
+    // Adds the median, the least and the greatest time of each name to a figure.
     void write(nlohmann::ordered_json& figure) const {
         for (const auto& [name, samples] : times_) {
             const Samples all = summary(samples);

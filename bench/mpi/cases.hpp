@@ -21,9 +21,10 @@ struct MpiCase {
     cellist::Shape shape;       ///< in three dimensions
 };
 
-/// Measures builds and exchanges of ghosts, and what they are compared with: builds of
-/// cellist::Lists with as many records, and the bytes alone. Each time is that of the slowest rank.
-/// Collective.
+/// Measures builds and exchanges of ghost cells, and what they are compared with: builds of
+/// cellist::Lists with the same number of records, and the bytes alone. Each time is that of the
+/// slowest rank, in milliseconds. `runs` timed runs follow two that let the pools grow. Collective.
+/// Blocks.
 ///
 /// Returns the figure of the case: see bench/report/mpi.py. Throws Error if records are missing.
 [[nodiscard]] nlohmann::ordered_json measure(const cellist::Device& device, MPI_Comm comm,

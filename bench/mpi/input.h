@@ -26,7 +26,7 @@ BENCH_FUNCTION bench_uint bench_mpi_cell(const MpiInput input, bench_uint i) {
     bench_uint x = input.origin[0] + own % input.own[0];
     bench_uint y = input.origin[1] + own / input.own[0] % input.own[1];
     bench_uint z = input.origin[2] + own / (input.own[0] * input.own[1]);
-    // Of each 40 particles, one has moved a block forwards, and one a block backwards.
+    // Of 40 particles, about one has moved a block forwards, and one a block backwards.
     const bench_uint moved = BENCH_BELOW(bench_hash(hash), 40u);
     if (input.kind == MPI_PARTICLES && moved < 2u) {
         const bench_uint sign = 1u - 2u * moved;

@@ -10,7 +10,7 @@
 
 namespace bench {
 
-/// A record as large as a particle.
+/// A record of the size of a particle, 16 bytes.
 struct MpiRecord {
     cl_uint number, hash, b, c;
 };
@@ -24,7 +24,7 @@ struct MpiInput {
     cl_uint extent[3] = {};  ///< of all cells
     cl_uint origin[3] = {};  ///< of the rank's block
     cl_uint own[3] = {};     ///< extents of the rank's block
-    cl_uint step[3] = {};    ///< from a block to the next
+    cl_uint step[3] = {};    ///< from a block to the next, in cells
 };
 CELLIST_STRUCT(MpiInput, kind, first, count, extent, origin, own, step);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Inserts of the records of one rank, one from each work-item; launched over whole work-groups.
+// Inserts the records of one rank, one per work-item. The range is padded to whole work-groups.
 #include <cellist/lists.clh>
 
 kernel void insert(CELLIST_LISTS(MpiRecord, lists), const MpiInput input) {

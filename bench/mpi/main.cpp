@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Compares distributed lists with lists of one device, and with the time that the bytes need alone.
-// scripts/bench mpi runs it with several numbers of ranks, and reports. CELLIST_DEVICE names the
-// device.
+// Compares distributed lists with lists of one device, and with a plain exchange of the same bytes.
+// scripts/bench mpi runs it with several numbers of ranks and reports the results. CELLIST_DEVICE
+// names the device.
 #include <filesystem>
 #include <iostream>
 #include <string>
@@ -40,7 +40,7 @@ Options parse(int count, const char* const* arguments) {
     return options;
 }
 
-// A cell for 16 records, 2 to the power of `bits`; a column of `copies` boxes that are about cubes.
+// Cells for 2^bits records per box, 16 to a cell: a column of `copies` boxes that are nearly cubes.
 cellist::Shape shape_for(std::uint64_t bits, std::uint64_t copies) {
     const std::uint64_t cell_bits = bits - 4;
     const auto side = [&](std::uint64_t axis) {

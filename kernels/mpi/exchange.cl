@@ -10,7 +10,7 @@
 // of cuts: an axis, a position, and the parts before and from the position on. A negative part
 // is the block of rank -1 - part.
 //
-// One work-item a node of the outbox.
+// One work-item per node of the outbox.
 kernel void cellist_route(CELLIST_LISTS(CELLIST_SENT, send),
                           global const struct CELLIST_SENT* outbox,
                           volatile global cellist_shard* shards, const cellist_view pool,
@@ -32,7 +32,7 @@ kernel void cellist_route(CELLIST_LISTS(CELLIST_SENT, send),
 
 // Inserts records that other ranks have sent. Their cells are those of the lists.
 //
-// One work-item a record.
+// One work-item per record.
 kernel void cellist_receive(CELLIST_LISTS(CELLIST_RECORD, lists),
                             global const struct CELLIST_SENT* received, const uint count) {
     const ulong i = get_global_id(0);
@@ -45,9 +45,9 @@ static inline uint cellist_cell_of_box(uint4 at, uint4 extent) {
 }
 
 // Copies the records of a box of cells, which `rank` has as ghost cells. The box begins at `first`
-// of the lists, and at `target` of that rank's lists, whose extents are `target_extent`.
+// in the lists, and at `target` in the lists of that rank, whose extents are `target_extent`.
 //
-// One work-item a cell of the box.
+// One work-item per cell of the box.
 kernel void cellist_copy_box(CELLIST_LISTS(CELLIST_SENT, send),
                              CELLIST_LISTS(CELLIST_RECORD, lists), const uint4 first,
                              const uint4 box, const uint4 target, const uint4 target_extent,
@@ -69,10 +69,9 @@ kernel void cellist_copy_box(CELLIST_LISTS(CELLIST_SENT, send),
     }
 }
 
-// Inserts the records of the rank's own block from a copy of all lists: the ghost cells are left
-// out.
+// Inserts the records of the rank's own block from a copy of all lists; leaves out the ghost cells.
 //
-// One work-item a cell of the block.
+// One work-item per cell of the block.
 kernel void cellist_keep_own(CELLIST_LISTS(CELLIST_RECORD, lists),
                              global const CELLIST_RECORD_TYPE* records, global const uint* offsets,
                              const uint4 first, const uint4 box) {

@@ -10,7 +10,7 @@ namespace cellist::detail {
 
 namespace {
 
-/// Counts of MPI are of type int.
+/// The most bytes of one call: counts of MPI are of type int.
 constexpr std::uint64_t bytes_max = std::uint64_t{1} << 30;
 
 /// An exception as one rank sends it to all.
@@ -28,7 +28,7 @@ struct FailureText {
     std::string log;
 };
 
-/// Takes an exception apart.
+/// Describes an exception. Types that the library does not have become `other`.
 void describe(const std::exception_ptr& error, Failure& failure, FailureText& text) {
     try {
         std::rethrow_exception(error);
@@ -94,7 +94,7 @@ void require_ready(MPI_Comm comm) {
 Communicator::Communicator(MPI_Comm comm) {
     require_ready(comm);
     MPI_Comm_dup(comm, &comm_);
-    // A rank that dies, or a message that fails, ends the job: no rank waits for ever.
+    // A rank that dies, or a message that fails, ends the job, so no rank waits forever.
     MPI_Comm_set_errhandler(comm_, MPI_ERRORS_ARE_FATAL);
     MPI_Comm_rank(comm_, &rank_);
     MPI_Comm_size(comm_, &size_);

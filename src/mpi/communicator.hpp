@@ -26,19 +26,21 @@ public:
     [[nodiscard]] int rank() const { return rank_; }
     [[nodiscard]] int size() const { return size_; }
 
-    /// Throws the same on all ranks if a rank passes an exception: that of the lowest such rank.
+    /// If ranks pass exceptions, throws that of the lowest such rank on all ranks. With several
+    /// ranks, exceptions of types that the library does not have become Error.
     void agree(const std::exception_ptr& error) const;
     /// Calls a function on all ranks, then agrees on what it throws.
     void together(const std::function<void()>& call) const;
-    /// Throws Error on all ranks unless all of them pass the same text. `what` says what it names.
+    /// Throws Error on all ranks unless all of them pass the same text. `what` is the plural noun
+    /// for what the text describes, for the message.
     void require_same(const std::string& text, const std::string& what) const;
 
-    /// What each rank sends to each: element r of the result is what rank r passes for this one.
+    /// Sends element r of `numbers` to each rank r. Element r of the result is from rank r.
     [[nodiscard]] std::vector<std::uint64_t> transpose(
         const std::vector<std::uint64_t>& numbers) const;
-    /// Replaces the numbers by their sums, minima or maxima over all ranks.
+    /// Replaces each number by its sum, minimum or maximum over all ranks.
     void reduce(std::uint64_t* numbers, std::uint64_t count, MPI_Op operation) const;
-    /// Copies bytes of one rank to all.
+    /// Copies bytes from rank `root` to all ranks.
     void broadcast(void* data, std::uint64_t bytes, int root) const;
 
 private:

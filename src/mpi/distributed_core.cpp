@@ -53,7 +53,7 @@ ListsOptions local_options(const PartitionPlan& plan, const ListsOptions& option
             "the partition says which axes of distributed lists are periodic: name them in "
             "PartitionOptions::periodic");
     ListsOptions local = options;
-    // Ghost cells stand for what lies beyond a divided axis.
+    // Along divided axes, ghost cells take the place of wrapping around.
     for (std::size_t axis = 0; axis < 4; ++axis)
         local.periodic[axis] =
             plan.options().periodic[axis] && plan.own().extent[axis] == plan.shape().extent(axis);
@@ -73,7 +73,7 @@ struct DistributedCore::Impl {
           kernels(device, definitions),
           outbox(device, kernels, *plan) {}
 
-    /// Whether kernels need to know how the cells are divided.
+    /// Whether there are several ranks: kernels then need the distribution.
     [[nodiscard]] bool is_divided() const { return communicator.size() > 1; }
 
     void add_to(Arguments& arguments) const {
@@ -81,7 +81,7 @@ struct DistributedCore::Impl {
         if (is_divided()) outbox.add_to(arguments, inserts);
     }
 
-    /// Runs the user's kernels, which may insert what `mode` says.
+    /// Runs the user's kernels, which may insert what `mode` says: CELLIST_INSERT_...
     void run(const std::function<void()>& insert, cl_uint mode) {
         inserts = mode;
         insert();
@@ -94,7 +94,7 @@ struct DistributedCore::Impl {
         send();
     }
 
-    /// Sends what is to be sent, on all ranks.
+    /// Sends the send lists, on all ranks.
     void send() {
         remember([&] { outbox.send(); });
     }
@@ -125,8 +125,8 @@ struct DistributedCore::Impl {
             error = std::current_exception();
         }
         try {
-            // An agreed failure has thrown on all ranks; any other is new to them. Their next
-            // collective call is to agree, in this place or in an earlier one.
+            // All ranks have thrown an agreed failure. Any other is new to the other ranks, whose
+            // next collective call is an agree(), here or earlier.
             if (agreed) std::rethrow_exception(std::exchange(agreed, nullptr));
             communicator.agree(error);
         } catch (...) {
@@ -135,7 +135,7 @@ struct DistributedCore::Impl {
             try {
                 lists.clear();
             } catch (...) {
-                // The error that is under way says why.
+                // The first error is rethrown below.
             }
             throw;
         }
@@ -256,7 +256,7 @@ BuildReport DistributedCore::build(const std::function<void()>& insert) {
         own.outbox.clear_received();
         own.has_ghosts = false;
         bool has_sent = !own.is_divided();
-        // Builds that measure a storage do not contain the exchange.
+        // Storage::automatic measures builds: keep the exchange out of them.
         if (own.is_automatic && !has_sent) {
             own.exchange(insert, CELLIST_INSERT_FOREIGN);
             has_sent = true;

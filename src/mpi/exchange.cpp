@@ -15,7 +15,7 @@ namespace {
 
 constexpr int tag = 1;
 
-/// The part of chunk k of so many bytes.
+/// The size in bytes of chunk k of a message of `bytes` bytes.
 std::uint64_t chunk(std::uint64_t bytes, std::uint64_t k, std::uint64_t chunk_bytes) {
     const std::uint64_t begin = std::min(k * chunk_bytes, bytes);
     return std::min(chunk_bytes, bytes - begin);
@@ -46,7 +46,7 @@ void Exchange::set_message_bytes(std::uint64_t bytes) {
     message_bytes_ = bytes;
 }
 
-/// Makes room for messages of up to so many bytes.
+/// Makes page-locked room for chunks of messages of up to `bytes` bytes.
 void Exchange::stage(std::uint64_t bytes) {
     const std::uint64_t needed = std::min(std::bit_ceil(bytes), message_bytes_);
     if (bytes == 0 || needed <= staged_bytes_) return;
@@ -63,7 +63,7 @@ void Exchange::stage(std::uint64_t bytes) {
     staged_bytes_ = needed;
 }
 
-/// The other ranks wait for messages: an error of the device is kept until all have arrived.
+/// Keeps an error of the device until all messages have arrived, because other ranks wait for them.
 void Exchange::attempt(const std::function<void()>& call) {
     if (error_) return;
     try {
@@ -113,7 +113,7 @@ std::uint64_t Exchange::run(const Memory& from, const std::vector<cl_uint>& offs
     return places[ranks];
 }
 
-/// Chunk k + 1 is read from the device, and written to it, while chunk k is on its way.
+/// Chunk k + 1 is copied from the device, and chunk k - 1 to it, while chunk k is in flight.
 void Exchange::send_and_receive(const Memory& from, const Part& to_send, const Part& to_receive) {
     // Both ranks cut the same bytes into the same chunks.
     const std::uint64_t size = message_bytes_;
@@ -121,7 +121,7 @@ void Exchange::send_and_receive(const Memory& from, const Part& to_send, const P
     const std::uint64_t receives = (to_receive.bytes + size - 1) / size;
     const auto read = [&](std::uint64_t k) {
         Staging& out = out_[k % 2];
-        // A send reads the same bytes.
+        // The send of chunk k - 2 reads the same bytes.
         MPI_Wait(&out.message, MPI_STATUS_IGNORE);
         attempt([&] {
             opencl([&] {

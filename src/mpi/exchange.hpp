@@ -13,8 +13,8 @@
 
 namespace cellist::detail {
 
-/// Sends elements of device memory from each rank to each, through a bounded amount of page-locked
-/// host memory. OpenCL memory is never handed to MPI.
+/// Sends elements of device memory between all ranks, through four page-locked host buffers of at
+/// most one message each. Never passes OpenCL memory to MPI.
 class Exchange {
 public:
     Exchange(const Communicator& communicator, MemoryOwner device)
@@ -24,12 +24,14 @@ public:
     Exchange& operator=(const Exchange&) = delete;
 
     /// Sends the elements offsets[r] ... offsets[r + 1] - 1 of `from` to each rank r. Returns the
-    /// number of elements that arrive; they are in received(), by the rank that sent them.
-    /// Collective. Blocks.
+    /// number of elements that arrive; they are in received(), in the order of the ranks that sent
+    /// them. Collective. Blocks. Throws on all ranks: MemoryError if more elements arrive than a
+    /// pool can hold or memory has room for, and OpenClError.
     std::uint64_t run(const Memory& from, const std::vector<cl_uint>& offsets,
                       std::size_t element_bytes);
     [[nodiscard]] const Memory& received() const { return received_; }
 
+    /// Sets the largest size of a message; 16 MiB by default.
     void set_message_bytes(std::uint64_t bytes);
 
 private:

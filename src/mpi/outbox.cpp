@@ -12,7 +12,7 @@ namespace cellist::detail {
 
 namespace {
 
-/// Nodes of an outbox at first. It grows to what a build needs.
+/// The nodes of a new outbox, which grows to the demand of a build.
 constexpr std::uint64_t first_capacity = 65536;
 
 /// The struct of a record and its cell, as cellist_node_T has them.
@@ -97,7 +97,7 @@ void Outbox::fill(const std::function<void(cl_uint)>& run, cl_uint inserts) {
         const BuildReport report{.attempted = sum.allocated + sum.dropped};
         pool_.require(report.attempted, report);
         pool_.grow(report.attempted, report);
-        // The rank's own records are in its lists.
+        // The rank's own records are already in its lists.
         inserts = CELLIST_INSERT_FOREIGN;
     }
     fill_send_lists([&](ListsCore& send) {

@@ -21,10 +21,10 @@ public:
     ExchangeKernels(MemoryOwner device, Definitions definitions)
         : device_(std::move(device)), definitions_(std::move(definitions)) {}
 
-    /// `modes` are those of the containers that it is compiled for first.
+    /// `modes` are those of the containers that the kernel is first compiled for.
     [[nodiscard]] Kernel& get(const std::string& name, unsigned modes);
     [[nodiscard]] const RecordType& record() const { return definitions_.records.back(); }
-    /// The last of them is a struct of a record and its cell, in the layout of cellist_node_T.
+    /// The last definition is a struct of a record and its cell, in the layout of cellist_node_T.
     [[nodiscard]] Definitions sent_definitions() const;
 
 private:
@@ -33,7 +33,7 @@ private:
     std::map<std::string, Kernel> kernels_;
 };
 
-/// The records of this rank for the lists of other ranks, and those that others have sent.
+/// The foreign records of this rank, and the records that other ranks have sent to it.
 class Outbox {
 public:
     Outbox(const MemoryOwner& device, ExchangeKernels& kernels, const PartitionPlan& plan);
@@ -45,15 +45,16 @@ public:
     /// It runs again for foreign records alone while the outbox is too small. Then puts the records
     /// in the order of the ranks. Blocks.
     void fill(const std::function<void(cl_uint)>& run, cl_uint inserts);
-    /// Fills the lists of records to send: `insert` inserts into them. They have one cell a rank.
+    /// Fills the send lists, which have one cell for each rank: `insert` inserts into them.
     void fill_send_lists(const std::function<void(ListsCore&)>& insert) {
         send_->build([&] { insert(*send_); });
     }
-    /// Sends them. Collective. Blocks.
+    /// Sends the send lists. Collective. Blocks.
     void send();
-    /// Inserts what has arrived. The container of the arguments takes the cells of the records.
+    /// Enqueues a kernel that inserts the records that have arrived into the container of the
+    /// arguments. Their cells are cells of that container.
     void insert_received(Arguments arguments);
-    /// Forgets what has arrived.
+    /// Forgets the records that have arrived.
     void clear_received() { received_ = 0; }
 
     void set_message_bytes(std::uint64_t bytes) { exchange_.set_message_bytes(bytes); }

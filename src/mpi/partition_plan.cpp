@@ -38,7 +38,8 @@ Block whole(const Shape& shape) {
     return block;
 }
 
-/// The blocks along each axis that the options name, or none.
+/// Returns whether the options name blocks; replaces each 0 by 1. Throws Error if the product is
+/// not the number of ranks.
 bool names_blocks(std::array<std::uint32_t, 4>& blocks, int ranks) {
     if (blocks == PartitionOptions{}.blocks) return false;
     std::uint64_t product = 1;
@@ -55,8 +56,8 @@ bool names_blocks(std::array<std::uint32_t, 4>& blocks, int ranks) {
     return true;
 }
 
-/// The position of the cut between the layers that brings the weight before it nearest to a part
-/// of the whole.
+/// Returns the position from `low` to `high` for which the weight of the layers before it is
+/// nearest to part / parts of the sum. `miss` is the difference.
 std::uint64_t cut_by_weight(const std::vector<std::uint64_t>& layers, std::uint64_t low,
                             std::uint64_t high, int part, int parts, double& miss) {
     double all = 0;
@@ -105,7 +106,7 @@ PartitionPlan::PartitionPlan(MPI_Comm comm, const Shape& shape, const PartitionO
     blocks_.resize(static_cast<std::size_t>(ranks), Block{{}, {0, 0, 0, 0}});
     cuts_.reserve(static_cast<std::size_t>(ranks));
     std::array<std::uint32_t, 4> grid = options.blocks;
-    // All ranks compute the same.
+    // All ranks compute the same cuts from the same numbers.
     if (weights == nullptr && names_blocks(grid, ranks)) {
         options_.blocks = grid;
         cut_into_grid({}, grid);
@@ -173,10 +174,10 @@ std::vector<std::uint64_t> PartitionPlan::layer_weights(const Block& block, std:
     return layers;
 }
 
-/// The axis along which to cut a block of about equal weights, with room for the ghost cells of
-/// both parts if it can be. The longest axis makes the shortest border. The slowest is cut first unless
-/// it is much shorter: blocks that divide no other axis are ranges of cells, for which an insert
-/// takes least.
+/// Returns the axis along which to cut a block of cells of equal weight. If possible, both parts
+/// are at least `width` cells long. A cut along the longest axis makes the shortest border. The
+/// slowest axis is cut first unless another is more than three times as long: if no other axis is
+/// divided, blocks are ranges of cells, and inserts take the least time.
 std::size_t PartitionPlan::axis_to_cut(const Block& block, std::uint64_t width) const {
     const std::size_t slowest = shape_.dimensions() - 1;
     const auto merit = [&](std::size_t axis) {
@@ -288,7 +289,7 @@ std::vector<GhostCopy> PartitionPlan::ghost_copies() const {
     for (int rank = 0; rank < communicator_.size(); ++rank) {
         const Block& other = block(rank);
         if (other.cells() == 0) continue;
-        // How often each axis wraps around, from -1 to 1.
+        // The digits of `shifts` to base 3: each axis wraps around -1, 0 or 1 times.
         for (int shifts = 0; shifts < 81; ++shifts) {
             GhostCopy copy{.rank = rank, .first = {}, .extent = {}, .target = {}};
             bool exists = true, moves = rank != communicator_.rank();
@@ -337,8 +338,8 @@ cellist_distribution PartitionPlan::distribution() const {
                                              all.held_stride[2]};
     for (std::size_t axis = 0; axis < 4; ++axis)
         all.own_offset += (all.ghosts[axis] - all.origin[axis]) * held_stride[axis];
-    // A block is a range of cells if only the slowest axis is divided. The strides are the same
-    // then.
+    // If only the slowest axis is divided, a block is a range of cells, with the strides of the
+    // whole shape.
     const std::size_t slowest = shape_.dimensions() - 1;
     bool is_range = own().cells() == 0;
     if (!is_range) {

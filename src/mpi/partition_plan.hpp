@@ -15,17 +15,19 @@ namespace cellist::detail {
 
 using Position = std::array<std::uint64_t, 4>;
 
-/// Cells of this rank that another rank, or this one beyond a periodic border, has as ghost cells.
+/// A box of this rank's cells, which another rank has as ghost cells; beyond a periodic border,
+/// this rank may be that rank.
 struct GhostCopy {
-    int rank;        ///< that has the ghost cells
-    Position first;  ///< in this rank's lists
+    int rank;        ///< the rank that has the ghost cells
+    Position first;  ///< the first cell of the box, in this rank's lists
     Position extent;
-    Position target;  ///< in the lists of `rank`
+    Position target;  ///< the first cell of the box, in the lists of `rank`
 };
 
 class PartitionPlan {
 public:
-    /// Blocks by `options`; by weights if there are some. Collective.
+    /// Divides the cells by `weights`, or by `options` if `weights` is null. Collective. Throws
+    /// what the constructors of mpi::Partition throw.
     PartitionPlan(MPI_Comm comm, const Shape& shape, const mpi::PartitionOptions& options,
                   const std::vector<std::uint64_t>* weights);
 
@@ -39,16 +41,17 @@ public:
     [[nodiscard]] std::uint64_t cell(const Position& position) const;
     [[nodiscard]] int owner(const Position& position) const;
 
-    /// Layers of ghost cells: 0 along axes that are not divided.
+    /// The layers of ghost cells along each axis: 0 along axes that are not divided.
     [[nodiscard]] const Position& ghosts() const { return ghosts_; }
-    /// Extents of a rank's lists.
+    /// The extents of a rank's lists: its block with the ghost cells, or 0 for an empty block.
     [[nodiscard]] Position held(int rank) const;
     [[nodiscard]] std::vector<GhostCopy> ghost_copies() const;
-    /// As kernels see it, without an outbox.
+    /// The distribution as kernels get it, but without an outbox.
     [[nodiscard]] cellist_distribution distribution() const;
 
     /// The tree of cuts: an axis, a position, and the parts before and from the position on. A
-    /// part is a cut, or -1 - r for the block of rank r. The root is the first; one rank has none.
+    /// part is the index of a cut, or -1 - r for the block of rank r. The root is the first cut.
+    /// There are no cuts if there is one rank.
     [[nodiscard]] const std::vector<std::array<cl_int, 4>>& cuts() const { return cuts_; }
 
 private:
@@ -71,7 +74,7 @@ private:
     Position ghosts_{};
 };
 
-/// The shape of these extents.
+/// Returns a shape with the first `dimensions` of the extents.
 [[nodiscard]] Shape shape_of(const Position& extent, std::size_t dimensions);
 
 }  // namespace cellist::detail

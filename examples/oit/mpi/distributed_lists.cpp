@@ -11,7 +11,7 @@
 namespace oit {
 namespace {
 
-// Rows of all eyes, divided over the ranks from the top to the bottom.
+// Divides the rows of the picture over the ranks, from top to bottom, in the same way for all eyes.
 cellist::mpi::Partition rows_of(const cellist::Shape& shape) {
     int ranks = 1;
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
@@ -25,7 +25,7 @@ public:
         : DistributedLists(source, storage, list_reader(source.frame().quality)) {}
 
     void store() override {
-        // No rank may begin a frame again alone, so the triangles have room before the build.
+        // No rank may restart a frame alone, so make room for the triangles before the build.
         while (!source_.finish_or_grow()) source_.prepare();
         fragments_.build([&] { source_.draw(pass_, fragments_); });
     }
@@ -55,13 +55,13 @@ private:
           pass_(source.pass(list_pass(), "lists.cl", fragments_)),
           reader_(source.screen_kernel(reader.text, reader.file_name, reader.kernel, fragments_)) {}
 
-    // Rows of the image that a rank owns.
+    // The number of rows that a rank owns.
     [[nodiscard]] int rows(int rank) const {
         const cellist::mpi::Block& block = fragments_.partition().block(rank);
         return block.cells() == 0 ? 0 : static_cast<int>(block.extent[1]);
     }
 
-    // Brings the rows of all ranks into the image of the first.
+    // Copies the rows of all ranks to the image of the first rank.
     void gather_rows() {
         const cellist::mpi::Partition& partition = fragments_.partition();
         const bool is_first = partition.rank() == 0;

@@ -5,10 +5,10 @@
 
 namespace oit {
 
-/// A method that keeps its fragments in lists (linked, counted or fixed), over the ranks of
+/// Returns a list method (linked, counted or fixed) with its lists distributed over the ranks of
 /// MPI_COMM_WORLD. Each rank draws its Frame::share of the triangles and owns some rows of pixels.
 /// Fragments go to the rank that owns their pixel, which blends them. The first rank gets the whole
-/// image, with the same bits for any number of ranks.
+/// image, the same to the bit for any number of ranks.
 ///
 /// Frames are collective. Throws InputError for other methods.
 [[nodiscard]] MethodInfo distributed(const MethodInfo& method);

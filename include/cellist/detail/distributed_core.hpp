@@ -18,7 +18,7 @@ namespace cellist::detail {
 /// The blocks of all ranks, and the communicator.
 class PartitionPlan;
 
-/// Calls a function on all ranks. If it fails on one, all ranks throw the same. Collective.
+/// Calls a function on all ranks. If it throws on one, all ranks throw the same error. Collective.
 CELLIST_API void on_all_ranks(const PartitionPlan& plan, const std::function<void()>& call);
 template <class Result>
 Result on_all_ranks(const PartitionPlan& plan, const std::function<Result()>& call) {
@@ -27,7 +27,8 @@ Result on_all_ranks(const PartitionPlan& plan, const std::function<Result()>& ca
     return std::move(*result);
 }
 
-/// The options of a rank's own lists.
+/// Returns the options of a rank's own lists. Throws Error if `options` names other periodic axes
+/// than the partition.
 [[nodiscard]] CELLIST_API ListsOptions local_options(const PartitionPlan& plan,
                                                      const ListsOptions& options);
 
@@ -43,7 +44,7 @@ public:
     DistributedCore(const DistributedCore&) = delete;
     DistributedCore& operator=(const DistributedCore&) = delete;
 
-    // All but the last ones are collective.
+    // All functions up to download() are collective.
     BuildReport build(const std::function<void()>& insert);
     BuildReport exchange_ghosts();
     void clear();
@@ -57,7 +58,7 @@ public:
     /// Adds what CELLIST_LISTS declares in a program for a distributed container.
     void add_to(Arguments& arguments) const;
     [[nodiscard]] Definitions definitions() const;
-    /// The most bytes of a message.
+    /// Sets the largest size of a message; for tests.
     void set_message_bytes(std::uint64_t bytes);
 
 private:
