@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Follows the links of several lists at a time, so that a processor waits for memory once for all of
-// them. With 4 M nodes in random places, two cores read them in a quarter of the time.
+// Follows the links of several lists at a time, so that a processor waits for memory once for all
+// of them. With 4 M nodes in random places, two cores read them in a quarter of the time.
 //
 // Included by kernels that read linked lists. The host defines CELLIST_READER_CELLS, the cells of a
 // work-item; a work-group has one work-item.
@@ -37,8 +37,8 @@ static inline int cellist_refill(cellist_reader* reader, volatile global const u
     return reader->open > 0;
 }
 
-// Loops over the open lists i, until all lists are closed. The body calls cellist_advance for a list
-// or closes it.
+// Loops over the open lists i, until all lists are closed. The body calls cellist_advance for a
+// list or closes it.
 #define cellist_for_each_open(reader, lists, i)                                                    \
     while (cellist_refill(&(reader), lists##_heads))                                               \
         for (uint i = 0; i < (reader).open; ++i)

@@ -210,8 +210,8 @@ kernel void cellist_sort_gather(CELLIST_LISTS(CELLIST_RECORD, lists), global con
     cellist_sort_key(&cellist_sort_record((nodes)[i]), values)
 #endif
 
-// The key by which a merge orders node i: on CPUs with a word of the record, where there is room, so
-// that few comparisons branch.
+// The key by which a merge orders node i: on CPUs with a word of the record, where there is room,
+// so that few comparisons branch.
 #if CELLIST_SORT_ITEMS == 1 && CELLIST_SORT_KEY_BITS == 32
 typedef ulong cellist_sort_merge_bits;
 #define cellist_sort_merge_key(nodes, keys, i)                                                     \

@@ -74,8 +74,8 @@ static inline void cellist_sort_tell_ties(volatile global cellist_sort_state* st
         atomic_add(&state->ties.tied_lists, found->tied_lists - known->tied_lists);
 }
 
-// Record i of a list is nodes[first + i], or nodes[index[i]] where `first` is CELLIST_NONE. The index
-// itself does not tell: on NVIDIA GPUs, an array in local memory may have the address 0.
+// Record i of a list is nodes[first + i], or nodes[index[i]] where `first` is CELLIST_NONE. The
+// index itself does not tell: on NVIDIA GPUs, an array in local memory may have the address 0.
 #define cellist_sort_at(i)                                                                         \
     (&cellist_sort_record(nodes[first == CELLIST_NONE ? index[i] : first + (i)]))
 

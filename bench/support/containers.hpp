@@ -40,8 +40,8 @@ enum class Caches { cold, warm };
 template <class Record>
 class Containers {
 public:
-    /// With cold caches, `interleaved` of these are used in turn, and together fill the caches. With
-    /// warm ones there is one container. Throws std::runtime_error if the lists are wrong.
+    /// With cold caches, `interleaved` of these are used in turn, and together fill the caches.
+    /// With warm ones there is one container. Throws std::runtime_error if the lists are wrong.
     Containers(const Suite& suite, const Workload& workload, const Configuration& configuration,
                Input input = Input::generated, Caches caches = Caches::cold,
                std::size_t interleaved = 1)

@@ -79,7 +79,8 @@ struct MeshFile {
 /// moves.
 [[nodiscard]] Scene make_scene(const FrameOptions& options);
 
-/// Whether the options ask for a floor, and an eye is above it: from below, it would hide the scene.
+/// Whether the options ask for a floor, and an eye is above it: from below, it would hide the
+/// scene.
 [[nodiscard]] bool sees_floor(const Scene& scene, const FrameOptions& options);
 
 /// Adds this floor.

@@ -26,8 +26,8 @@ enum class Storage {
     linked,
     /// Two passes over the same kernel, which count and fill. The lists are contiguous, so reading
     /// is fast, and the pool holds exactly the records. The kernel must insert the same number of
-    /// records into each cell both times. On GPUs and on processors under PoCL, builds take one pass
-    /// if they can, and about as much additional memory as Storage::linked.
+    /// records into each cell both times. On GPUs and on processors under PoCL, builds take one
+    /// pass if they can, and about as much additional memory as Storage::linked.
     counted,
     /// One pass into a fixed number of slots per cell. For lists of about equal length.
     fixed,

@@ -24,7 +24,8 @@ struct CELLIST_API DeviceState {
                 bool is_out_of_order, bool owns_its_queue);
     DeviceState(const DeviceState&) = delete;
     DeviceState& operator=(const DeviceState&) = delete;
-    /// Blocks until the work in a queue of its own has run: PoCL crashes if the process ends before.
+    /// Blocks until the work in a queue of its own has run: PoCL crashes if the process ends
+    /// before.
     ~DeviceState();
 
     cl::Context context;

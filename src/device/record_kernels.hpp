@@ -29,9 +29,9 @@ public:
     RecordKernels(MemoryOwner device, Definitions definitions);
 
     /// The kernel `name` of a program: the definitions, then the files. CELLIST_RECORD is the name
-    /// of the record, and CELLIST_RECORD_TYPE its type. The containers among the arguments have this
-    /// mode, as in view.h. `types` are those that the definitions use. The reference is valid until
-    /// the next call. Throws OpenClError.
+    /// of the record, and CELLIST_RECORD_TYPE its type. The containers among the arguments have
+    /// this mode, as in view.h. `types` are those that the definitions use. The reference is valid
+    /// until the next call. Throws OpenClError.
     [[nodiscard]] Kernel& get(std::initializer_list<KernelFile> files, const char* name,
                               unsigned mode, const std::string& definitions = {},
                               const Definitions& types = {});

@@ -19,7 +19,8 @@ void check_key(const SortKey& key);
 /// key decides no ties.
 [[nodiscard]] std::string tie_function(const SortKey& key, const RecordType& record);
 
-/// Whether a key is the value of a member, or a scalar record, which is the same whenever it is read.
+/// Whether a key is the value of a member, or a scalar record, which is the same whenever it is
+/// read.
 [[nodiscard]] bool is_member(const SortKey& key);
 
 }  // namespace cellist::detail

@@ -42,8 +42,8 @@ kernel void raster_transform(global const View* views, global const RasterInstan
 //   ..._capacity     of the queues
 
 // Work-items that look for the blocks of a triangle together. On CPUs, where a block has one
-// work-item, each is faster alone. On GPUs, the group shares out few triangles among large teams, as
-// each may cover much of the image.
+// work-item, each is faster alone. On GPUs, the group shares out few triangles among large teams,
+// as each may cover much of the image.
 static inline uint raster_bin_team(uint triangles) {
     if (RASTER_LANES == 1) return 1;
     uint team = 8;
