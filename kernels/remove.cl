@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Divides contiguous lists by a predicate. The records that stay move to the start of their list, in
-// order; the removed records follow in any order.
+// Divides contiguous lists by a predicate. The records that stay move to the start of their list,
+// in order; the removed records follow in any order.
 //
 //   lengths   cells   out: the records that stay
 //

@@ -22,9 +22,10 @@ public:
     /// Puts every particle into the list of its cell, on the rank of that cell. Returns the report
     /// of all ranks.
     cellist::BuildReport build();
-    /// From now on, each rank inserts the particles that it has. Call it before exchange_ghosts().
+    /// Makes later builds insert the particles where they are now: each rank inserts those that it
+    /// has. Call it before exchange_ghosts().
     void keep_own_points() { points_ = lists_.local().pack().records; }
-    /// Copies the particles next to each block.
+    /// Copies the particles next to each block into its ghost cells.
     void exchange_ghosts() { lists_.exchange_ghosts(); }
     /// Finds the neighbours of each rank's own particles.
     void find() { sums_.find(lists_.local()); }

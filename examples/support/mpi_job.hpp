@@ -34,16 +34,16 @@ public:
 
 private:
     enum class End { good, bad, failed };
-    // Waits for all ranks. A rank that failed does not wait long.
+    // Waits for all ranks. A rank that failed waits for a limited time.
     [[nodiscard]] bool finish(End end, const std::string& error) const;
 
     std::string program_;
-    MPI_Comm ends_ = MPI_COMM_NULL;  ///< on which ranks tell how their work ended
+    MPI_Comm ends_ = MPI_COMM_NULL;  ///< for messages that say how the work of each rank ended
     int rank_ = 0;
     int ranks_ = 1;
 };
 
-/// The devices of all ranks in one text, such as "2 x NVIDIA H200". `name` is that of this rank's.
+/// Returns the devices of all ranks as text, such as "2 x NVIDIA H200". `name` is this rank's.
 /// Collective over MPI_COMM_WORLD.
 [[nodiscard]] std::string devices_of_all_ranks(const std::string& name);
 

@@ -26,18 +26,18 @@ struct NeighbourOptions {
     /// as "distance(record.position, other.position)". The kernel functions cellist_minimum_image,
     /// for periodic boxes, and cellist_norm serve here.
     std::string distance;
-    /// The largest distance of neighbours. NaN is no distance of neighbours.
+    /// The largest distance between neighbours. Pairs with a distance of NaN are no neighbours.
     float radius = std::numeric_limits<float>::infinity();
-    /// Records in cells that are further apart along an axis are no neighbours: the radius divided
-    /// by the size of a cell, rounded up.
+    /// The number of cells to search in each direction along each axis: the radius divided by the
+    /// size of a cell, rounded up. Finds no neighbours in cells further away.
     std::uint32_t radius_cells = 1;
-    /// What the expression uses by name. See Value.
+    /// The values that the expression uses by name. See Value.
     Values values = {};
 };
 
 /// The neighbours of every record, as rows of indices (CSR). Row i belongs to the record at place i
 /// of Lists::pack(). It has the indices[offsets[i]] ... indices[offsets[i + 1] - 1], in no
-/// particular order. A record is not its own neighbour. Each pair of neighbours is there twice,
+/// particular order. A record is not its own neighbour. Each pair of neighbours is in two rows,
 /// unless the distance depends on the order of its records.
 ///
 /// A Neighbours object that is passed to the next search keeps its buffers, which may then have
@@ -54,7 +54,7 @@ struct Neighbours {
 
 /// Which records Lists::nearest() finds for each query. Expressions are those of Lists::sort_by().
 struct NearestOptions {
-    /// Records for each query, 64 at most.
+    /// The number of records for each query, at most 64.
     std::uint32_t k = 1;
     /// Where the query is, in cells: an expression of `query` with a value that is a float or an
     /// int, or a vector of up to 4 of them, such as "query.xyz / 0.1f". It must be what the kernel
@@ -64,11 +64,12 @@ struct NearestOptions {
     /// The distance of a record to a query: an expression of `record` and `query` with a float
     /// value, such as "distance(record.position, query)".
     std::string distance;
-    /// The largest distance of a record that is found. NaN is no distance.
+    /// The largest distance of a record from its query. Records with a distance of NaN are not
+    /// found.
     float radius = std::numeric_limits<float>::infinity();
     /// Only cells that are at most this far from the query's along each axis are searched.
     std::uint32_t radius_cells = 1;
-    /// What the expressions use by name. See Value.
+    /// The values that the expressions use by name. See Value.
     Values values = {};
 };
 

@@ -120,7 +120,7 @@ struct ListsOptions {
     /// For Storage::automatic: how often kernels read all lists after each build.
     std::uint32_t expected_reads = 1;
     /// The axes that wrap around: on a periodic axis, the cells at both ends are neighbours, and a
-    /// coordinate outside of the shape means the cell at its remainder. On the other axes, nothing
+    /// coordinate outside the shape wraps around to a cell inside. On the other axes, nothing
     /// lies beyond the shape. E.g. `.periodic = {true, true, false}`.
     std::array<bool, 4> periodic = {};
 };
