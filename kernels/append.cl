@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What appends to lists need beside the inserts of the user.
+// Kernels that appends need besides those of the user.
 //
-// One work-item a cell, except for cellist_save_counters; ranges are padded to whole work-groups.
+// One work-item per cell, except for cellist_save_counters; ranges are padded to whole work-groups.
 #include <cellist/lists.clh>
 
 // Inserts all records of other lists of the same shape.
@@ -16,7 +16,7 @@ kernel void cellist_insert_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
 //
 //   saved   as the shards of the lists   out
 //
-// One work-item an element.
+// One work-item per element.
 kernel void cellist_save_counters(CELLIST_LISTS(CELLIST_RECORD, lists),
                                   volatile global cellist_shard* saved) {
     const cellist_view lists_view = cellist_view_of(lists);

@@ -5,7 +5,7 @@
 //   heads     first + words   set to `value` from word `first` on
 //   counters  counter_words   set to 0
 //
-// One work-item a word; the range is padded to whole work-groups.
+// One work-item per word; the range is padded to whole work-groups.
 kernel void cellist_clear(global uint* heads, ulong first, ulong words, uint value,
                           global uint* counters, uint counter_words) {
     const ulong i = get_global_id(0);

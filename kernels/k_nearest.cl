@@ -78,9 +78,9 @@ static uint cellist_keep_nearest(CELLIST_LISTS(CELLIST_RECORD, lists), uint k, u
     return kept;
 }
 
-// A work-group a query. Its work-items look at neighbouring nodes, and collect the records that may
-// be among the nearest. When there is no room for another round, they keep the first k; then only
-// records that are no further away are collected.
+// One work-group per query. Its work-items look at neighbouring nodes, and collect the records that
+// may be among the nearest. When there is no room for another round, they keep the first k; then
+// only records that are no further away are collected.
 kernel __attribute__((reqd_work_group_size(CELLIST_TEAM, 1, 1))) void cellist_find_nearest(
     CELLIST_LISTS(CELLIST_RECORD, lists), global const CELLIST_QUERY* queries, uint count, uint k,
     uint radius_cells, float radius, const cellist_values values, global uint* counts,
@@ -135,7 +135,7 @@ kernel __attribute__((reqd_work_group_size(CELLIST_TEAM, 1, 1))) void cellist_fi
 
 #else
 
-// One work-item a query. It keeps the nearest records so far, in order.
+// One work-item per query. It keeps the nearest records so far, in order.
 kernel void cellist_find_nearest(CELLIST_LISTS(CELLIST_RECORD, lists),
                                  global const CELLIST_QUERY* queries, uint count, uint k,
                                  uint radius_cells, float radius, const cellist_values values,

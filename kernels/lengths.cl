@@ -3,8 +3,8 @@
 //
 //   lengths   cells   out: nodes of the cell
 //
-// One work-item a cell, or one for CELLIST_READER_CELLS of them (reader.cl); the range is padded to
-// whole work-groups.
+// One work-item per cell, or one for CELLIST_READER_CELLS of them (reader.cl); the range is padded
+// to whole work-groups.
 #include <cellist/lists.clh>
 
 #ifdef CELLIST_READER_CELLS
@@ -33,7 +33,7 @@ kernel void cellist_lengths(CELLIST_LISTS(CELLIST_RECORD, lists), global uint* l
 //   lengths     cells
 //   histogram   bins    in: 0; out: the cells of each length, those with longer lists in the last
 //
-// One work-item a cell; the range is padded to whole work-groups. A work-group counts the first
+// One work-item per cell; the range is padded to whole work-groups. A work-group counts the first
 // CELLIST_LOCAL_BINS bins in local memory.
 #define CELLIST_LOCAL_BINS 256u
 

@@ -4,7 +4,7 @@
 //   from      the copy; a list begins where the copy says
 //   offsets   cells + 1   where each list goes if lists are contiguous; these say how long it is
 //
-// One work-item a cell, and one a counter at least; the range is padded to whole work-groups. The
+// At least one work-item per cell and per counter; the range is padded to whole work-groups. The
 // counters are 0 before.
 #include <cellist/lists.clh>
 

@@ -2,7 +2,7 @@
 // The thresholds between the K records of each cell that come first and all others; see
 // nearest.clh.
 //
-// One work-item a cell; the range is padded to whole work-groups.
+// One work-item per cell; the range is padded to whole work-groups.
 #include <cellist/lists.clh>
 
 // After a threshold pass: the threshold of its word, and how many of the records that equal it are

@@ -13,10 +13,10 @@
 // The host defines CELLIST_RECORD, cellist_values, cellist_distance(record, other, values), and
 // CELLIST_INDEX(node), the index of a record.
 //
-// On processors it also defines CELLIST_CANDIDATES: one work-item a cell copies so many records
+// On processors it also defines CELLIST_CANDIDATES: one work-item per cell copies that many records
 // from the cells around it to private memory. All records of the cell are compared with these
-// candidates, in loops without branches, of which compilers make vectors. Elsewhere each record has
-// a work-item.
+// candidates, in loops without branches, which compilers vectorise. Elsewhere each record has a
+// work-item.
 //
 // The expression may have another value in the second pass. Rows then have undefined indices, but
 // no work-item stores beyond a row.
@@ -64,7 +64,7 @@ static void cellist_compare(CELLIST_LISTS(CELLIST_RECORD, lists),
     }
 }
 
-// One work-item a cell.
+// One work-item per cell.
 kernel void cellist_neighbours(CELLIST_LISTS(CELLIST_RECORD, lists), uint radius_cells,
                                float radius, const cellist_values values, uint stores,
                                global uint* counts, global const uint* offsets,
@@ -91,13 +91,13 @@ kernel void cellist_neighbours(CELLIST_LISTS(CELLIST_RECORD, lists), uint radius
 
 #else
 
-// The cell of each record; one work-item a cell.
+// The cell of each record; one work-item per cell.
 kernel void cellist_cells_of_records(CELLIST_LISTS(CELLIST_RECORD, lists), global uint* cells) {
     const uint cell = get_global_id(0);
     cellist_for_each(lists, cell, node) cells[node] = cell;
 }
 
-// One work-item a record.
+// One work-item per record.
 kernel void cellist_neighbours(CELLIST_LISTS(CELLIST_RECORD, lists), uint radius_cells,
                                float radius, const cellist_values values, uint stores,
                                global uint* counts, global const uint* offsets,

@@ -4,7 +4,7 @@
 //
 //   lengths   cells   out: the records that stay
 //
-// One work-item a cell; the range is padded to whole work-groups. The host defines cellist_values
+// One work-item per cell; the range is padded to whole work-groups. The host defines cellist_values
 // and cellist_sort_key; the key of a record is odd if the record is to go.
 #include <cellist/lists.clh>
 

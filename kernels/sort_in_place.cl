@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sorts lists of any length where there is no memory for a second pool, one work-item a list. See
+// Sorts lists of any length where there is no memory for a second pool, one work-item per list. See
 // sort.cl.
 //
 // Linked lists: bottom-up merge sort of the list itself. pending[i] is a sorted list of 2^i nodes

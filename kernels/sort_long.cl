@@ -117,7 +117,7 @@ static inline uint cellist_sort_chain(const cellist_view view, uint list,
 
 #endif
 
-// Gives each list its chunks, and linked lists their nodes; one work-item a list.
+// Gives each list its chunks, and linked lists their nodes; one work-item per list.
 kernel void cellist_sort_assign(CELLIST_LISTS(CELLIST_RECORD, lists), global const uint* longer,
                                 uint count, global cellist_sort_long_list* long_lists,
                                 global uint* chunk_owners, uint chunks_max,
@@ -352,7 +352,7 @@ kernel void cellist_sort_merge_runs(global const cellist_sort_long_list* long_li
     }
 }
 
-// Copies the lists whose last pass left them in the other pool; one work-item a node.
+// Copies the lists whose last pass left them in the other pool; one work-item per node.
 kernel void cellist_sort_return(global const cellist_sort_long_list* long_lists,
                                 global const uint* chunk_owners, uint chunks,
                                 global const cellist_sort_node* from,

@@ -3,7 +3,7 @@
 //
 //   found   2   in and out: at least the length of the longest list; nothing of use
 //
-// One work-item a cell; the range is padded to whole work-groups. A list is left after `most`
+// One work-item per cell; the range is padded to whole work-groups. A list is left after `most`
 // records. The host defines CELLIST_WORD, the largest of uchar and uint that divides the record.
 #include <cellist/lists.clh>
 

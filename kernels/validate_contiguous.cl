@@ -6,7 +6,7 @@
 //   findings   1           in: 0; out: broken, the lists with impossible or other offsets;
 //                          unfilled, the nodes that have no record; nodes, those of all lists
 //
-// One work-item a cell; the range is padded to whole work-groups.
+// One work-item per cell; the range is padded to whole work-groups.
 #include <cellist/lists.clh>
 
 kernel void cellist_validate_contiguous(CELLIST_LISTS(CELLIST_RECORD, lists),

@@ -7,7 +7,7 @@
 //                                          never allocated, links to nodes reached before, nodes
 //                                          reached
 //
-// One work-item a cell; the range is padded to whole work-groups. A traversal ends at the first
+// One work-item per cell; the range is padded to whole work-groups. A traversal ends at the first
 // node that another link reached, so all traversals together take at most nodes + cells steps,
 // whatever the links hold, and no address outside of the pool is read.
 #include <cellist/lists.clh>
