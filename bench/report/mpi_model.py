@@ -44,8 +44,8 @@ def _transfer(records, messages):
 
 
 def cost(records, ranks, foreign=None):
-    """The costs of a rank with this many records. `foreign` is the part that neighbours own; without it,
-    cells are random."""
+    """The costs of a rank with this number of records. `foreign` is the part that neighbours own; without
+    it, cells are random."""
     is_random = foreign is None
     part = (ranks - 1) / ranks if is_random else foreign
     messages = ranks - 1 if is_random else neighbours(ranks)
@@ -75,8 +75,9 @@ def _ms(seconds):
 
 
 def as_markdown():
-    rows = [("records a rank", "input", "ranks", "a build sends", "ghosts send", "memory of lists", "memory of an exchange",
-             "time of a local build", "of an exchange", "of ghosts")]
+    rows = [("records per rank", "input", "ranks", "sent by a build, in messages", "sent for ghosts, in messages",
+             "memory of lists", "memory of an exchange", "time of a local build", "time of an exchange",
+             "time of ghosts")]
     for title, records_of in (("2^24", lambda ranks: 2**24), ("2^26 / ranks", lambda ranks: 2**26 // ranks)):
         for name, foreign in (("particles", 0.05), ("random", None)):
             for ranks in RANKS:
