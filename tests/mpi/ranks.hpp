@@ -31,7 +31,7 @@ template <class T>
     return share;
 }
 
-/// Makes inserts in distributed lists, of which each rank makes its share.
+/// Makes inserts in distributed lists. Each rank makes its share of them.
 template <class T>
 class DistributedInserter {
 public:
