@@ -63,8 +63,8 @@ struct Block {
 /// The cells of a shape, divided into one block for each rank. If there are more ranks than cells,
 /// some blocks are empty. Copies share their content.
 ///
-/// Constructors and balanced() are collective and block. So is the destruction of the last copy,
-/// which frees the communicator; lists keep a copy. All other functions are local.
+/// Constructors and balanced() are collective and block. The destruction of the last copy is
+/// collective, too: it frees the communicator. Lists keep a copy. All other functions are local.
 class CELLIST_API Partition {
 public:
     /// Divides the cells into blocks of about equal size. Duplicates `comm`, so that the messages
@@ -84,10 +84,9 @@ public:
     /// Divides the cells into blocks of about equal weight. `weights` has a number for each cell of
     /// the whole shape, e.g. the lengths of the lists of an earlier build. The library adds the
     /// weights of all ranks, so each rank can pass those of its own records; the sums must fit into
-    /// 64 bits. Each cut is a plane between two layers of a block, so blocks differ by up to about
-    /// the weight of a layer. Takes 8 bytes of host memory per cell. Throws what the constructor
-    /// throws, and Error if the number of weights is not the number of cells. Ignores
-    /// PartitionOptions::blocks.
+    /// 64 bits. Each cut is a plane between two layers of a block, so a heavy layer limits the
+    /// balance. Takes 8 bytes of host memory per cell. Throws what the constructor throws, and
+    /// Error if the number of weights is not the number of cells. Ignores PartitionOptions::blocks.
     [[nodiscard]] static Partition balanced(MPI_Comm comm, const Shape& shape,
                                             const std::vector<std::uint64_t>& weights,
                                             const PartitionOptions& options = {});
