@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <new>
 
 #include <cellist/error.hpp>
 
@@ -43,6 +44,9 @@ void describe(const std::exception_ptr& error, Failure& failure, FailureText& te
     } catch (const MemoryError& memory) {
         failure.kind = Failure::Kind::memory;
         text.text = memory.what();
+    } catch (const std::bad_alloc&) {
+        failure.kind = Failure::Kind::memory;
+        text.text = "the host has no memory left";
     } catch (const std::exception& other) {
         text.text = other.what();
     } catch (...) {
