@@ -135,7 +135,8 @@ private:
 ///
 /// Make collective calls on all ranks of the communicator, in the same order, with the same
 /// arguments but for kernels, ranges and what kernels take. Each blocks until the other ranks have
-/// made it, too. If a rank fails, all ranks throw the same error. With several
+/// made it, too. If a rank fails, all ranks throw the same error. They also throw Error if they make
+/// different calls, or sort by different keys. With several
 /// ranks, its message (or call() of an OpenClError) begins with the number of the failed rank, and
 /// an exception of a type that the library does not have becomes Error. All functions throw what
 /// those of cellist::Lists throw.
@@ -153,7 +154,7 @@ public:
     Lists(const Device& device, const Partition& partition, const ListsOptions& options = {})
         : partition_(partition),
           local_(detail::on_all_ranks<cellist::Lists<T>>(
-              *partition.plan(),
+              *partition.plan(), "Lists",
               [&] {
                   return cellist::Lists<T>(device, partition.local_shape(),
                                            detail::local_options(*partition.plan(), options));
@@ -201,21 +202,26 @@ public:
     /// sends no records. Blocks.
     template <class M, std::same_as<T> R>
     void sort(M R::*member, Order order = Order::ascending) {
-        on_all_ranks([&] { local_.sort(member, order); });
+        on_all_ranks(call("sort", detail::member_name(member), order),
+                     [&] { local_.sort(member, order); });
     }
     void sort(Order order = Order::ascending) requires detail::Scalar<T> {
-        on_all_ranks([&] { local_.sort(order); });
+        on_all_ranks(call("sort", "", order), [&] { local_.sort(order); });
     }
     void sort_by(const std::string& expression, Order order = Order::ascending) {
-        on_all_ranks([&] { local_.sort_by(expression, order); });
+        on_all_ranks(call("sort_by", expression, order),
+                     [&] { local_.sort_by(expression, order); });
     }
     void sort_by(const std::string& expression, const Values& values,
                  Order order = Order::ascending) {
-        on_all_ranks([&] { local_.sort_by(expression, values, order); });
+        on_all_ranks(call("sort_by", expression, order),
+                     [&] { local_.sort_by(expression, values, order); });
     }
     template <class M, std::same_as<T> R>
     void partial_sort(M R::*member, std::uint32_t count, Order order = Order::ascending) {
-        on_all_ranks([&] { local_.partial_sort(member, count, order); });
+        on_all_ranks(call("partial_sort of " + std::to_string(count) + " records",
+                          detail::member_name(member), order),
+                     [&] { local_.partial_sort(member, count, order); });
     }
 
     /// Measures the lists of all ranks; ghost cells do not count. Collective. Blocks.
@@ -251,8 +257,13 @@ public:
     [[nodiscard]] detail::DistributedCore& core() const { return *core_; }
 
 private:
-    void on_all_ranks(const std::function<void()>& call) const {
-        detail::on_all_ranks(*partition_.plan(), call);
+    /// A sort in words, which all ranks compare.
+    static std::string call(const std::string& name, const std::string& key, Order order) {
+        return name + (key.empty() ? "" : " by " + key) +
+               (order == Order::ascending ? ", ascending" : ", descending");
+    }
+    void on_all_ranks(const std::string& name, const std::function<void()>& call) const {
+        detail::on_all_ranks(*partition_.plan(), name, call);
     }
 
     Partition partition_;

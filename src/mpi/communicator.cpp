@@ -70,6 +70,14 @@ void describe(const std::exception_ptr& error, Failure& failure, FailureText& te
     throw Error(text.text);
 }
 
+/// FNV-1a, which is the same on all hosts.
+std::uint64_t hash_of(const std::string& text) {
+    std::uint64_t hash = 0xcbf2'9ce4'8422'2325;
+    for (const char character : text)
+        hash = (hash ^ static_cast<unsigned char>(character)) * 0x100'0000'01b3;
+    return hash;
+}
+
 void require_ready(MPI_Comm comm) {
     int initialised = 0, finalised = 0, level = 0, is_main = 0;
     MPI_Initialized(&initialised);
@@ -115,9 +123,14 @@ void Communicator::agree(const std::exception_ptr& error) const {
         if (error) std::rethrow_exception(error);
         return;
     }
-    int failed = error ? rank_ : size_;
-    MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MIN, comm_);
-    if (failed == size_) return;
+    // The lowest rank that fails, the least hash of a call, and the complement of the greatest.
+    const std::uint64_t hash = hash_of(call_);
+    std::array<std::uint64_t, 3> least{static_cast<std::uint64_t>(error ? rank_ : size_), hash,
+                                       ~hash};
+    reduce(least.data(), least.size(), MPI_MIN);
+    const int failed = static_cast<int>(least[0]);
+    if (failed == size_ && least[1] == ~least[2]) return;
+    if (failed == size_) require_same(call_, "collective calls");
     Failure failure;
     FailureText text;
     if (failed == rank_) describe(error, failure, text);

@@ -6,14 +6,15 @@
 #include <exception>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <cellist/mpi.hpp>
 
 namespace cellist::detail {
 
-/// A duplicate of the program's communicator. All functions but get(), rank() and size() are
-/// collective.
+/// A duplicate of the program's communicator. All functions but get(), rank(), size() and begin()
+/// are collective.
 class Communicator {
 public:
     /// Throws Error if MPI is not ready for the library.
@@ -26,8 +27,11 @@ public:
     [[nodiscard]] int rank() const { return rank_; }
     [[nodiscard]] int size() const { return size_; }
 
+    /// Names the collective call that begins, with its arguments. Local.
+    void begin(std::string call) const { call_ = std::move(call); }
     /// If ranks pass exceptions, throws that of the lowest such rank on all ranks. With several
-    /// ranks, exceptions of types that the library does not have become Error.
+    /// ranks, exceptions of types that the library does not have become Error. Otherwise throws
+    /// Error on all ranks if they are in different calls.
     void agree(const std::exception_ptr& error) const;
     /// Calls a function on all ranks, then agrees on what it throws.
     void together(const std::function<void()>& call) const;
@@ -47,6 +51,7 @@ private:
     MPI_Comm comm_ = MPI_COMM_NULL;
     int rank_ = 0;
     int size_ = 1;
+    mutable std::string call_;
 };
 
 }  // namespace cellist::detail

@@ -43,7 +43,9 @@ std::uint64_t cells_of(const Position& extent) {
 
 }  // namespace
 
-void on_all_ranks(const PartitionPlan& plan, const std::function<void()>& call) {
+void on_all_ranks(const PartitionPlan& plan, const std::string& name,
+                  const std::function<void()>& call) {
+    plan.communicator().begin(name);
     plan.communicator().together(call);
 }
 
@@ -241,7 +243,7 @@ DistributedCore::DistributedCore(std::shared_ptr<DeviceState> device, Definition
                                  std::shared_ptr<const PartitionPlan> plan,
                                  const ListsOptions& options, ListsCore& local) {
     plan->communicator().require_same(lists_text(definitions.records.back(), options), "lists");
-    on_all_ranks(*plan, [&] {
+    on_all_ranks(*plan, "Lists", [&] {
         impl_ =
             std::make_unique<Impl>(std::move(device), std::move(definitions), plan, options, local);
     });
@@ -252,6 +254,7 @@ DistributedCore::~DistributedCore() = default;
 BuildReport DistributedCore::build(const std::function<void()>& insert) {
     Impl& own = *impl_;
     BuildReport report;
+    own.communicator.begin("build");
     own.change([&] {
         own.outbox.clear_received();
         own.has_ghosts = false;
@@ -286,6 +289,7 @@ BuildReport DistributedCore::exchange_ghosts() {
             "a partition without ghost cells has none to exchange: set "
             "PartitionOptions::ghosts");
     BuildReport report;
+    own.communicator.begin("exchange_ghosts");
     own.change([&] {
         own.agree([&] {
             if (own.has_ghosts) own.remove_ghosts();
@@ -304,7 +308,7 @@ BuildReport DistributedCore::exchange_ghosts() {
 
 void DistributedCore::clear() {
     impl_->has_ghosts = false;
-    on_all_ranks(*impl_->plan, [&] { impl_->lists.clear(); });
+    on_all_ranks(*impl_->plan, "clear", [&] { impl_->lists.clear(); });
 }
 
 void DistributedCore::add_to(Arguments& arguments) const { impl_->add_to(arguments); }
@@ -322,7 +326,7 @@ void DistributedCore::set_message_bytes(std::uint64_t bytes) {
 Lengths DistributedCore::lengths() const {
     const Impl& own = *impl_;
     std::vector<cl_uint> of_own;
-    on_all_ranks(*own.plan, [&] {
+    on_all_ranks(*own.plan, "lengths", [&] {
         std::vector<cl_uint> all;
         ReadbackFence fence;
         fence.add(own.lists.read_lengths(all));
@@ -354,7 +358,7 @@ Lengths DistributedCore::lengths() const {
 Validation DistributedCore::validate() const {
     const Impl& own = *impl_;
     Validation found;
-    on_all_ranks(*own.plan, [&] { found = own.lists.validate()(); });
+    on_all_ranks(*own.plan, "validate", [&] { found = own.lists.validate()(); });
     std::array<std::uint64_t, 4> sums{found.broken_links, found.repeated_nodes, found.lost_nodes,
                                       found.late_inserts};
     own.communicator.reduce(sums.data(), sums.size(), MPI_SUM);
@@ -382,7 +386,7 @@ void DistributedCore::download(std::vector<std::uint64_t>& offsets,
     std::vector<std::byte> mine;
     std::byte* all = nullptr;
     std::vector<std::byte> of_rank;
-    on_all_ranks(*own.plan, [&] {
+    on_all_ranks(*own.plan, "download", [&] {
         std::vector<cl_uint> starts;
         std::vector<std::byte> records;
         {
@@ -407,7 +411,7 @@ void DistributedCore::download(std::vector<std::uint64_t>& offsets,
     std::vector<std::uint64_t> sizes(static_cast<std::size_t>(own.communicator.size()), 0);
     sizes[static_cast<std::size_t>(own.communicator.rank())] = mine.size();
     own.communicator.reduce(sizes.data(), sizes.size(), MPI_SUM);
-    on_all_ranks(*own.plan, [&] {
+    on_all_ranks(*own.plan, "download", [&] {
         all = static_cast<std::byte*>(allocate(offsets[cells]));
         of_rank = host_memory<std::byte>(*std::max_element(sizes.begin(), sizes.end()));
     });

@@ -71,6 +71,30 @@ TEST_CASE("all ranks refuse different options and records") {
     });
 }
 
+TEST_CASE("ranks that make different calls throw, and go on") {
+    with_all_counts([&](MPI_Comm comm, int ranks) {
+        if (ranks == 1) return;
+        const mpi::Partition partition(comm, Shape{40}, {.ghosts = 1});
+        mpi::Lists<Item> lists(device(), partition);
+        const bool is_first = rank_of(comm) == 0;
+        const std::string calls = common_error(comm, [&] {
+            if (is_first)
+                (void)lists.lengths();
+            else
+                lists.exchange_ghosts();
+        });
+        contains(calls, "rank 0 has lengths, rank 1 has exchange_ghosts");
+        const std::string keys = common_error(comm, [&] {
+            if (is_first)
+                lists.sort(&Item::key);
+            else
+                lists.sort(&Item::id);
+        });
+        contains(keys, "rank 0 has sort by key, ascending, rank 1 has sort by id, ascending");
+        CHECK(lists.lengths().total == 0);
+    });
+}
+
 TEST_CASE("a partition is refused if its blocks do not fit") {
     with_all_counts([&](MPI_Comm comm, int ranks) {
         const auto count = static_cast<std::uint32_t>(ranks);

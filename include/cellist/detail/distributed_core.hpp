@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <cellist/detail/api.hpp>
@@ -18,12 +19,15 @@ namespace cellist::detail {
 /// The blocks of all ranks, and the communicator.
 class PartitionPlan;
 
-/// Calls a function on all ranks. If it throws on one, all ranks throw the same error. Collective.
-CELLIST_API void on_all_ranks(const PartitionPlan& plan, const std::function<void()>& call);
+/// Calls a function on all ranks. If it throws on one, all ranks throw the same error. They also
+/// throw Error if they pass different names. Collective.
+CELLIST_API void on_all_ranks(const PartitionPlan& plan, const std::string& name,
+                              const std::function<void()>& call);
 template <class Result>
-Result on_all_ranks(const PartitionPlan& plan, const std::function<Result()>& call) {
+Result on_all_ranks(const PartitionPlan& plan, const std::string& name,
+                    const std::function<Result()>& call) {
     std::optional<Result> result;
-    on_all_ranks(plan, [&] { result.emplace(call()); });
+    on_all_ranks(plan, name, [&] { result.emplace(call()); });
     return std::move(*result);
 }
 
