@@ -120,7 +120,7 @@ Struct take_struct(Input& input, const std::vector<Struct>& known, std::set<std:
         member.offset = offset;
         member.is_scalar =
             extents.empty() && type.scalars.size() == 1 && type.scalars[0].path.empty();
-        for (const Scalar& scalar : added) member.scalars.push_back(scalar.path);
+        for (const Scalar& scalar : added) member.scalars.push_back("." + scalar.path);
         out.record.members.push_back(member);
         for (Scalar& scalar : added) {
             scalar.path.insert(0, ".");
