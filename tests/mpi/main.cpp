@@ -2,6 +2,7 @@
 // The main of tests that run on several ranks: all ranks run the same tests in the same order.
 #define CELLIST_TESTS_MAIN
 #include <csignal>
+#include <cstdlib>
 #include <iostream>
 #include <optional>
 #include <sstream>
@@ -114,6 +115,13 @@ int main(int argument_count, char** arguments) {
         return run_with_killed_rank(argument_count, arguments);
     int level = 0;
     MPI_Init_thread(&argument_count, &arguments, MPI_THREAD_FUNNELED, &level);
+    // Ranks compile the same programs at the same time. PoCL 3.1 once failed where they shared the
+    // folder that keeps them.
+    if (const char* const folder = std::getenv("POCL_CACHE_DIR"))
+        setenv(
+            "POCL_CACHE_DIR",
+            (std::string(folder) + "/rank-" + std::to_string(cellist::test::world_rank())).c_str(),
+            1);
     // All ranks tell the same, unless one fails.
     const bool is_first = cellist::test::world_rank() == 0;
     std::ostringstream text;
