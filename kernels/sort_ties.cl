@@ -75,7 +75,7 @@ static inline void cellist_sort_tell_ties(volatile global cellist_sort_state* st
 }
 
 // Record i of a list is nodes[first + i], or nodes[index[i]] where `first` is CELLIST_NONE. The
-// index itself does not tell: on NVIDIA GPUs, an array in local memory may have the address 0.
+// index itself does not tell, because an array in local memory may have the address 0.
 #define cellist_sort_at(i)                                                                         \
     (&cellist_sort_record(nodes[first == CELLIST_NONE ? index[i] : first + (i)]))
 

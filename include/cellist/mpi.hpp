@@ -135,11 +135,10 @@ private:
 ///
 /// Make collective calls on all ranks of the communicator, in the same order, with the same
 /// arguments but for kernels, ranges and what kernels take. Each blocks until the other ranks have
-/// made it, too. If a rank fails, all ranks throw the same error. They also throw Error if they make
-/// different calls, or sort by different keys. With several
-/// ranks, its message (or call() of an OpenClError) begins with the number of the failed rank, and
-/// an exception of a type that the library does not have becomes Error. All functions throw what
-/// those of cellist::Lists throw.
+/// made it, too. If a rank fails, all ranks throw the same error. They also throw Error if they
+/// make different calls, or sort by different keys. With several ranks, its message (or call() of
+/// an OpenClError) begins with the number of the failed rank, and an exception of a type that the
+/// library does not have becomes Error. All functions throw what those of cellist::Lists throw.
 ///
 /// Owned by value: movable, not copyable. Using moved-from Lists throws Error.
 template <class T>

@@ -44,6 +44,19 @@ static inline uint cellist_cell_of_box(uint4 at, uint4 extent) {
     return ((at.w * extent.z + at.z) * extent.y + at.y) * extent.x + at.x;
 }
 
+// The place of work-item i in a box of cells, x fastest.
+static inline uint4 cellist_place_in_box(uint i, uint4 box) {
+    const uint row = i / box.x;
+    const uint plane = row / box.y;
+    return (uint4)(i - row * box.x, row - plane * box.y, plane % box.z, plane / box.z);
+}
+
+// The cell of the lists at a place.
+static inline uint cellist_cell_at_place(const cellist_view view, uint4 at) {
+    return cellist_cell_of_box(
+        at, (uint4)(view.extent[0], view.extent[1], view.extent[2], view.extent[3]));
+}
+
 // Copies the records of a box of cells, which `rank` has as ghost cells. The box begins at `first`
 // in the lists, and at `target` in the lists of that rank, whose extents are `target_extent`.
 //
@@ -54,13 +67,8 @@ kernel void cellist_copy_box(CELLIST_LISTS(CELLIST_SENT, send),
                              const uint rank) {
     const ulong i = get_global_id(0);
     if (i >= (ulong)box.x * box.y * box.z * box.w) return;
-    const uint row = (uint)i / box.x;
-    const uint plane = row / box.y;
-    const uint4 at =
-        (uint4)((uint)i - row * box.x, row - plane * box.y, plane % box.z, plane / box.z);
-    const int4 extent = cellist_extent(lists);
-    const uint cell = cellist_cell_of_box(
-        first + at, (uint4)((uint)extent.x, (uint)extent.y, (uint)extent.z, (uint)extent.w));
+    const uint4 at = cellist_place_in_box((uint)i, box);
+    const uint cell = cellist_cell_at_place(cellist_view_of(lists), first + at);
     cellist_for_each(lists, cell, node) {
         struct CELLIST_SENT sent;
         sent.record = cellist_get(lists, node);
@@ -77,13 +85,8 @@ kernel void cellist_keep_own(CELLIST_LISTS(CELLIST_RECORD, lists),
                              const uint4 first, const uint4 box) {
     const ulong i = get_global_id(0);
     if (i >= (ulong)box.x * box.y * box.z * box.w) return;
-    const uint row = (uint)i / box.x;
-    const uint plane = row / box.y;
-    const uint4 at =
-        (uint4)((uint)i - row * box.x, row - plane * box.y, plane % box.z, plane / box.z);
-    const int4 extent = cellist_extent(lists);
-    const uint cell = cellist_cell_of_box(
-        first + at, (uint4)((uint)extent.x, (uint)extent.y, (uint)extent.z, (uint)extent.w));
+    const uint4 at = first + cellist_place_in_box((uint)i, box);
+    const uint cell = cellist_cell_at_place(cellist_view_of(lists), at);
     for (uint node = offsets[cell]; node < offsets[cell + 1]; ++node)
         cellist_insert(lists, cell, records[node]);
 }
