@@ -8,7 +8,7 @@
 namespace bench {
 
 void add_append(Suite& suite) {
-    add_cases(suite, "append", suite.bases(), storages(),
+    add_cases(suite, "append", suite.readable_bases(), storages(),
               []<class Record>(const Suite& s, const Workload& workload,
                                const Configuration& configuration) {
                   Containers<Record> containers(s, workload, configuration);
