@@ -31,9 +31,14 @@
 namespace cellist::mpi {
 
 /// Returns a device for this rank. The ranks of a host take its GPUs in turn; if there are more
-/// ranks than GPUs, ranks share GPUs. Without a GPU, or if the environment variable CELLIST_DEVICE
-/// is set, returns Device::choose(). Collective. Blocks. Throws what Device::choose() throws, on
-/// all ranks. Throws Error if MPI is not ready: see Partition.
+/// ranks than GPUs, ranks share GPUs. Without a GPU, returns Device::choose().
+///
+/// If the environment variable CELLIST_DEVICE is set, ranks take the devices that it names, as in
+/// Device::choose(selector): an index names one device, and a name all devices that it matches. The
+/// ranks of a host that have the same value take these devices in turn.
+///
+/// Collective. Blocks. Throws what Device::choose() throws, on all ranks. Throws Error if MPI is not
+/// ready: see Partition.
 [[nodiscard]] CELLIST_API Device choose(MPI_Comm comm);
 
 /// How a Partition divides its cells.

@@ -98,6 +98,33 @@ std::string lower(std::string_view text) {
 constexpr const char* no_device =
     "no OpenCL device found: install a driver, or PoCL for the CPU (pocl-opencl-icd)";
 
+/// The indices of the devices that a selector names.
+std::vector<std::size_t> called(const std::vector<cl::Device>& devices, std::string_view selector) {
+    if (devices.empty()) throw Error(no_device);
+    std::string known;
+    for (std::size_t i = 0; i < devices.size(); ++i)
+        known += (i == 0 ? "" : ", ") + std::to_string(i) + " = " + describe(devices[i]).name;
+
+    std::size_t index = 0;
+    const char* end = selector.data() + selector.size();
+    const auto [stop, error] = std::from_chars(selector.data(), end, index);
+    if (error != std::errc::invalid_argument && stop == end) {
+        if (error == std::errc() && index < devices.size()) return {index};
+        throw Error("no device has the index " + std::string(selector) + "; there are: " + known);
+    }
+
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+        const DeviceInfo info = describe(devices[i]);
+        if (!selector.empty() &&
+            lower(info.name + "\n" + info.platform).find(lower(selector)) != std::string::npos)
+            found.push_back(i);
+    }
+    if (found.empty())
+        throw Error("no device is called '" + std::string(selector) + "'; there are: " + known);
+    return found;
+}
+
 }  // namespace
 
 Device Device::choose() {
@@ -116,28 +143,7 @@ Device Device::choose() {
 Device Device::choose(std::string_view selector) {
     return detail::opencl([&] {
         const std::vector<cl::Device> devices = all_devices();
-        if (devices.empty()) throw Error(no_device);
-
-        std::string known;
-        for (std::size_t i = 0; i < devices.size(); ++i)
-            known += (i == 0 ? "" : ", ") + std::to_string(i) + " = " + describe(devices[i]).name;
-
-        std::size_t index = 0;
-        const char* end = selector.data() + selector.size();
-        const auto [stop, error] = std::from_chars(selector.data(), end, index);
-        if (error != std::errc::invalid_argument && stop == end) {
-            if (error == std::errc() && index < devices.size()) return Device(devices[index]);
-            throw Error("no device has the index " + std::string(selector) +
-                        "; there are: " + known);
-        }
-
-        for (const cl::Device& device : devices) {
-            const DeviceInfo info = describe(device);
-            if (!selector.empty() &&
-                lower(info.name + "\n" + info.platform).find(lower(selector)) != std::string::npos)
-                return Device(device);
-        }
-        throw Error("no device is called '" + std::string(selector) + "'; there are: " + known);
+        return Device(devices[called(devices, selector).front()]);
     });
 }
 
@@ -194,6 +200,10 @@ void Device::prepare(const std::function<void()>& frame,
 }
 
 namespace detail {
+
+std::vector<std::size_t> devices_called(std::string_view selector) {
+    return opencl([&] { return called(all_devices(), selector); });
+}
 
 DeviceState::DeviceState(cl::Context its_context, cl::CommandQueue its_queue, cl::Device its_device,
                          bool is_out_of_order, bool owns_its_queue)

@@ -7,6 +7,8 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string_view>
+#include <vector>
 
 #include <cellist/device.hpp>
 #include <cellist/error.hpp>
@@ -62,6 +64,10 @@ inline void check(const char* call, cl_int code) {
 
 /// A count of 64 bits that kernels keep in two words.
 inline std::uint64_t wide(cl_uint low, cl_uint high) { return (std::uint64_t{high} << 32) | low; }
+
+/// The devices that a selector names, by their index in Device::all(): see Device::choose(). Throws
+/// Error if there is none.
+[[nodiscard]] CELLIST_API std::vector<std::size_t> devices_called(std::string_view selector);
 
 /// Places for the threads of a device that has some (threads.clh): twice as many, so that a table
 /// of them is never crowded; a power of two.

@@ -110,12 +110,29 @@ Communicator::Communicator(MPI_Comm comm) {
     MPI_Comm_set_errhandler(comm_, MPI_ERRORS_ARE_FATAL);
     MPI_Comm_rank(comm_, &rank_);
     MPI_Comm_size(comm_, &size_);
+    MPI_Comm_split_type(comm_, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &host_);
+    MPI_Comm_set_errhandler(host_, MPI_ERRORS_ARE_FATAL);
+    MPI_Comm_rank(host_, &host_rank_);
+    int host_size = 0;
+    MPI_Comm_size(host_, &host_size);
+    std::vector<int> ranks(static_cast<std::size_t>(host_size));
+    MPI_Allgather(&rank_, 1, MPI_INT, ranks.data(), 1, MPI_INT, host_);
+    host_ranks_.assign(ranks.begin(), ranks.end());
 }
 
 Communicator::~Communicator() {
     int finalised = 0;
     MPI_Finalized(&finalised);
-    if (finalised == 0) MPI_Comm_free(&comm_);
+    if (finalised != 0) return;
+    MPI_Comm_free(&host_);
+    MPI_Comm_free(&comm_);
+}
+
+int Communicator::turn_on_host(const std::string& text) const {
+    const std::uint64_t hash = hash_of(text);
+    std::vector<std::uint64_t> hashes(host_ranks_.size());
+    MPI_Allgather(&hash, 1, MPI_UINT64_T, hashes.data(), 1, MPI_UINT64_T, host_);
+    return static_cast<int>(std::count(hashes.begin(), hashes.begin() + host_rank_, hash));
 }
 
 void Communicator::agree(const std::exception_ptr& error) const {

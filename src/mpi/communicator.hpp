@@ -13,8 +13,8 @@
 
 namespace cellist::detail {
 
-/// A duplicate of the program's communicator. All functions but get(), rank(), size() and begin()
-/// are collective.
+/// A duplicate of the program's communicator. All functions but begin() and those that return what
+/// the communicator is are collective.
 class Communicator {
 public:
     /// Throws Error if MPI is not ready for the library.
@@ -26,6 +26,15 @@ public:
     [[nodiscard]] MPI_Comm get() const { return comm_; }
     [[nodiscard]] int rank() const { return rank_; }
     [[nodiscard]] int size() const { return size_; }
+
+    /// The communicator of the ranks on this rank's host, and this rank in it.
+    [[nodiscard]] MPI_Comm host() const { return host_; }
+    [[nodiscard]] int host_rank() const { return host_rank_; }
+    /// What the ranks of host() are in get(), in ascending order.
+    [[nodiscard]] const std::vector<std::size_t>& host_ranks() const { return host_ranks_; }
+
+    /// The number of ranks on this host that pass the same text and are before this rank.
+    [[nodiscard]] int turn_on_host(const std::string& text) const;
 
     /// Names the collective call that begins, with its arguments. Local.
     void begin(std::string call) const { call_ = std::move(call); }
@@ -51,6 +60,9 @@ private:
     MPI_Comm comm_ = MPI_COMM_NULL;
     int rank_ = 0;
     int size_ = 1;
+    MPI_Comm host_ = MPI_COMM_NULL;
+    int host_rank_ = 0;
+    std::vector<std::size_t> host_ranks_;
     mutable std::string call_;
 };
 

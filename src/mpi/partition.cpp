@@ -4,32 +4,29 @@
 
 #include <cellist/mpi.hpp>
 
+#include "device/device_state.hpp"
 #include "mpi/partition_plan.hpp"
 
 namespace cellist::mpi {
 
 Device choose(MPI_Comm comm) {
     const detail::Communicator communicator(comm);
-    MPI_Comm host = MPI_COMM_NULL;
-    MPI_Comm_split_type(communicator.get(), MPI_COMM_TYPE_SHARED, communicator.rank(),
-                        MPI_INFO_NULL, &host);
-    int rank = 0;
-    MPI_Comm_rank(host, &rank);
-    MPI_Comm_free(&host);
+    const char* variable = std::getenv("CELLIST_DEVICE");
+    const std::string selector = variable == nullptr ? "" : variable;
+    const int turn = communicator.turn_on_host(selector);
     std::optional<Device> device;
     communicator.together([&] {
-        const char* named = std::getenv("CELLIST_DEVICE");
-        std::vector<std::size_t> gpus;
-        if (named == nullptr || *named == '\0') {
+        std::vector<std::size_t> devices;
+        if (!selector.empty()) {
+            devices = detail::devices_called(selector);
+        } else {
             const std::vector<DeviceInfo> all = Device::all();
             for (std::size_t i = 0; i < all.size(); ++i)
-                if ((all[i].type & CL_DEVICE_TYPE_GPU) != 0) gpus.push_back(i);
+                if ((all[i].type & CL_DEVICE_TYPE_GPU) != 0) devices.push_back(i);
         }
-        if (gpus.empty())
-            device = Device::choose();
-        else
-            device =
-                Device::choose(std::to_string(gpus[static_cast<std::size_t>(rank) % gpus.size()]));
+        device = devices.empty() ? Device::choose()
+                                 : Device::choose(std::to_string(
+                                       devices[static_cast<std::size_t>(turn) % devices.size()]));
     });
     return std::move(*device);
 }
