@@ -323,6 +323,8 @@ void DistributedCore::set_message_bytes(std::uint64_t bytes) {
     impl_->outbox.set_message_bytes(bytes);
 }
 
+void DistributedCore::set_shares_memory(bool shares) { impl_->outbox.set_shares_memory(shares); }
+
 Lengths DistributedCore::lengths() const {
     const Impl& own = *impl_;
     std::vector<cl_uint> of_own;

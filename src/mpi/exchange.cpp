@@ -21,11 +21,6 @@ std::uint64_t chunk(std::uint64_t bytes, std::uint64_t k, std::uint64_t chunk_by
     return std::min(chunk_bytes, bytes - begin);
 }
 
-void wait_for(cl::Event& event) {
-    if (event() != nullptr) opencl([&] { event.wait(); });
-    event = cl::Event();
-}
-
 }  // namespace
 
 Exchange::~Exchange() { release(); }
@@ -44,6 +39,7 @@ void Exchange::release() noexcept {
 void Exchange::set_message_bytes(std::uint64_t bytes) {
     release();
     message_bytes_ = bytes;
+    within_host_.set_piece_bytes(bytes);
 }
 
 /// Makes page-locked room for chunks of messages of up to `bytes` bytes.
@@ -63,54 +59,53 @@ void Exchange::stage(std::uint64_t bytes) {
     staged_bytes_ = needed;
 }
 
-/// Keeps an error of the device until all messages have arrived, because other ranks wait for them.
-void Exchange::attempt(const std::function<void()>& call) {
-    if (error_) return;
-    try {
-        call();
-    } catch (...) {
-        error_ = std::current_exception();
-    }
-}
-
 std::uint64_t Exchange::run(const Memory& from, const std::vector<cl_uint>& offsets,
                             std::size_t element_bytes) {
-    const auto ranks = static_cast<std::uint64_t>(communicator_.size());
-    const auto self = static_cast<std::uint64_t>(communicator_.rank());
+    const auto ranks = static_cast<std::size_t>(communicator_.size());
+    const auto self = static_cast<std::size_t>(communicator_.rank());
     std::vector<std::uint64_t> counts(ranks);
-    for (std::uint64_t r = 0; r < ranks; ++r) counts[r] = offsets[r + 1] - offsets[r];
+    for (std::size_t r = 0; r < ranks; ++r) counts[r] = offsets[r + 1] - offsets[r];
     const std::vector<std::uint64_t> arriving = communicator_.transpose(counts);
-    std::vector<std::uint64_t> places(ranks + 1, 0);
-    for (std::uint64_t r = 0; r < ranks; ++r) places[r + 1] = places[r] + arriving[r];
+    // In bytes: for rank r, sent[r] ... sent[r + 1] - 1; from rank r, received[r] ...
+    std::vector<std::uint64_t> sent(ranks + 1, offsets[0] * element_bytes), received(ranks + 1, 0);
+    for (std::size_t r = 0; r < ranks; ++r) {
+        sent[r + 1] = sent[r] + counts[r] * element_bytes;
+        received[r + 1] = received[r] + arriving[r] * element_bytes;
+    }
+    const std::uint64_t count = received[ranks] / element_bytes;
 
+    const bool shares_memory = within_host_.prepare(sent, received);
+    std::vector<bool> gets_messages(ranks, true);
+    gets_messages[self] = false;
+    if (shares_memory)
+        for (const std::size_t r : communicator_.host_ranks()) gets_messages[r] = false;
+    const auto part = [&](std::size_t r, const std::vector<std::uint64_t>& places) {
+        return Part{static_cast<int>(r), places[r],
+                    gets_messages[r] ? places[r + 1] - places[r] : 0};
+    };
     std::uint64_t longest = 0;
-    for (std::uint64_t r = 0; r < ranks; ++r)
-        if (r != self) longest = std::max({longest, counts[r], arriving[r]});
+    for (std::size_t r = 0; r < ranks; ++r)
+        longest = std::max({longest, part(r, sent).bytes, part(r, received).bytes});
     communicator_.together([&] {
-        if (places[ranks] > CELLIST_CAPACITY_NODES_MAX)
-            throw MemoryError(std::to_string(places[ranks]) +
-                              " records arrive, and a rank takes at most " +
+        if (count > CELLIST_CAPACITY_NODES_MAX)
+            throw MemoryError(std::to_string(count) + " records arrive, and a rank takes at most " +
                               std::to_string(CELLIST_CAPACITY_NODES_MAX) + ": use more ranks");
-        if (places[ranks] * element_bytes > received_.size_bytes())
-            received_ = Memory(device_, places[ranks], element_bytes, "received records");
-        stage(longest * element_bytes);
+        if (received[ranks] > received_.size_bytes())
+            received_ = Memory(device_, count, element_bytes, "received records");
+        stage(longest);
         if (arriving[self] == 0) return;
         opencl([&] {
-            device_->ordered_queue().enqueueCopyBuffer(
-                from.cl(), received_.cl(), offsets[self] * element_bytes,
-                places[self] * element_bytes, arriving[self] * element_bytes);
+            device_->ordered_queue().enqueueCopyBuffer(from.cl(), received_.cl(), sent[self],
+                                                       received[self],
+                                                       arriving[self] * element_bytes);
         });
     });
-    for (std::uint64_t distance = 1; distance < ranks; ++distance) {
-        const std::uint64_t to = (self + distance) % ranks;
-        const std::uint64_t source = (self + ranks - distance) % ranks;
-        send_and_receive(
-            from, {static_cast<int>(to), offsets[to] * element_bytes, counts[to] * element_bytes},
-            {static_cast<int>(source), places[source] * element_bytes,
-             arriving[source] * element_bytes});
-    }
-    communicator_.agree(std::exchange(error_, nullptr));
-    return places[ranks];
+    if (shares_memory) within_host_.run(from, received_, attempts_);
+    for (std::size_t distance = 1; distance < ranks; ++distance)
+        send_and_receive(from, part((self + distance) % ranks, sent),
+                         part((self + ranks - distance) % ranks, received));
+    communicator_.agree(attempts_.take());
+    return count;
 }
 
 /// Chunk k + 1 is copied from the device, and chunk k - 1 to it, while chunk k is in flight.
@@ -123,18 +118,16 @@ void Exchange::send_and_receive(const Memory& from, const Part& to_send, const P
         Staging& out = out_[k % 2];
         // The send of chunk k - 2 reads the same bytes.
         MPI_Wait(&out.message, MPI_STATUS_IGNORE);
-        attempt([&] {
-            opencl([&] {
-                device_->ordered_queue().enqueueReadBuffer(
-                    from.cl(), CL_FALSE, to_send.first_byte + k * size,
-                    chunk(to_send.bytes, k, size), out.bytes, nullptr, &out.used);
-                device_->queue.flush();
-            });
+        attempts_.make([&] {
+            device_->ordered_queue().enqueueReadBuffer(
+                from.cl(), CL_FALSE, to_send.first_byte + k * size, chunk(to_send.bytes, k, size),
+                out.bytes, nullptr, &out.used);
+            device_->queue.flush();
         });
     };
     const auto receive = [&](std::uint64_t k) {
         Staging& in = in_[k % 2];
-        attempt([&] { wait_for(in.used); });
+        attempts_.wait_for(in.used);
         MPI_Irecv(in.bytes, static_cast<int>(chunk(to_receive.bytes, k, size)), MPI_BYTE,
                   to_receive.rank, tag, communicator_.get(), &in.message);
     };
@@ -144,7 +137,7 @@ void Exchange::send_and_receive(const Memory& from, const Part& to_send, const P
         if (k + 1 < receives) receive(k + 1);
         if (k < sends) {
             Staging& out = out_[k % 2];
-            attempt([&] { wait_for(out.used); });
+            attempts_.wait_for(out.used);
             MPI_Isend(out.bytes, static_cast<int>(chunk(to_send.bytes, k, size)), MPI_BYTE,
                       to_send.rank, tag, communicator_.get(), &out.message);
         }
@@ -152,21 +145,19 @@ void Exchange::send_and_receive(const Memory& from, const Part& to_send, const P
         if (k < receives) {
             Staging& in = in_[k % 2];
             MPI_Wait(&in.message, MPI_STATUS_IGNORE);
-            attempt([&] {
-                opencl([&] {
-                    device_->ordered_queue().enqueueWriteBuffer(
-                        received_.cl(), CL_FALSE, to_receive.first_byte + k * size,
-                        chunk(to_receive.bytes, k, size), in.bytes, nullptr, &in.used);
-                    device_->queue.flush();
-                });
+            attempts_.make([&] {
+                device_->ordered_queue().enqueueWriteBuffer(
+                    received_.cl(), CL_FALSE, to_receive.first_byte + k * size,
+                    chunk(to_receive.bytes, k, size), in.bytes, nullptr, &in.used);
+                device_->queue.flush();
             });
         }
     }
     for (Staging& out : out_) {
         MPI_Wait(&out.message, MPI_STATUS_IGNORE);
-        attempt([&] { wait_for(out.used); });
+        attempts_.wait_for(out.used);
     }
-    for (Staging& in : in_) attempt([&] { wait_for(in.used); });
+    for (Staging& in : in_) attempts_.wait_for(in.used);
 }
 
 }  // namespace cellist::detail

@@ -58,6 +58,7 @@ public:
     void clear_received() { received_ = 0; }
 
     void set_message_bytes(std::uint64_t bytes) { exchange_.set_message_bytes(bytes); }
+    void set_shares_memory(bool shares) { exchange_.set_shares_memory(shares); }
 
 private:
     [[nodiscard]] cellist_view view() const;

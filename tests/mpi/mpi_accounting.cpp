@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The report of a build over several ranks is exact, under each policy, in each storage.
+// The report of a build over several ranks is exact, under each policy, in each storage, through
+// shared memory and in messages.
 #include "mpi/ranks.hpp"
 #include "support/catch.hpp"
 
@@ -39,35 +40,42 @@ TEST_CASE("attempted records are stored, dropped or rejected, in 1000 random cas
         const std::size_t count = below(random, 1200);
         const auto cells = static_cast<std::uint32_t>(shape.cells());
         const Inserts<Item> inserts = random_inserts(count, 1 + cells + below(random, 10), random);
+        const std::uint64_t message_bytes = std::uint64_t{12} << below(random, 21);
         if (ranks > world_size()) continue;
         with_ranks(ranks, [&](MPI_Comm comm) {
             INFO("case " << number << ", " << ranks << " ranks, shape " << shape.to_string() << ", "
                          << name_of(options.storage) << ", policy "
                          << static_cast<int>(options.overflow));
             const auto oracle = oracle_of(inserts, shape.cells());
-            mpi::Lists<Item> lists(device(), mpi::Partition(comm, shape), options);
-            DistributedInserter<Item> inserter(lists, inserts);
-            BuildReport report;
-            bool is_full = false;
-            try {
-                report = inserter.build(lists);
-            } catch (const OverflowError&) {
-                is_full = true;
+            const mpi::Partition partition(comm, shape);
+            for (const bool shares : {true, false}) {
+                INFO("memory is " << (shares ? "" : "not ") << "shared");
+                mpi::Lists<Item> lists(device(), partition, options);
+                lists.core().set_shares_memory(shares);
+                lists.core().set_message_bytes(message_bytes);
+                DistributedInserter<Item> inserter(lists, inserts);
+                BuildReport report;
+                bool is_full = false;
+                try {
+                    report = inserter.build(lists);
+                } catch (const OverflowError&) {
+                    is_full = true;
+                }
+                int full = is_full ? 1 : 0, all = 0;
+                MPI_Allreduce(&full, &all, 1, MPI_INT, MPI_SUM, comm);
+                REQUIRE((all == 0 || all == ranks));
+                if (is_full) {
+                    REQUIRE(options.overflow == Overflow::stop);
+                    REQUIRE(lists.lengths().total == 0);
+                    continue;
+                }
+                REQUIRE(report.attempted == inserts.size());
+                REQUIRE(report.rejected == inserts.size() - oracle.size());
+                REQUIRE(report.stored + report.dropped == oracle.size());
+                if (options.overflow != Overflow::drop) REQUIRE(report.dropped == 0);
+                REQUIRE(lists.lengths().total == report.stored);
+                REQUIRE(lists.validate().ok());
             }
-            int full = is_full ? 1 : 0, all = 0;
-            MPI_Allreduce(&full, &all, 1, MPI_INT, MPI_SUM, comm);
-            REQUIRE((all == 0 || all == ranks));
-            if (is_full) {
-                REQUIRE(options.overflow == Overflow::stop);
-                REQUIRE(lists.lengths().total == 0);
-                return;
-            }
-            REQUIRE(report.attempted == inserts.size());
-            REQUIRE(report.rejected == inserts.size() - oracle.size());
-            REQUIRE(report.stored + report.dropped == oracle.size());
-            if (options.overflow != Overflow::drop) REQUIRE(report.dropped == 0);
-            REQUIRE(lists.lengths().total == report.stored);
-            REQUIRE(lists.validate().ok());
         });
     }
 }

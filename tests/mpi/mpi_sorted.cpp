@@ -26,9 +26,10 @@ void require_same_lists(const HostLists<Item>& found, const HostLists<Item>& exp
 
 void check(const mpi::Partition& partition, const ListsOptions& options,
            const Inserts<Item>& inserts, const HostLists<Item>& expected,
-           std::uint64_t message_bytes = 0) {
+           std::uint64_t message_bytes = 0, bool shares_memory = true) {
     mpi::Lists<Item> lists(device(), partition, options);
     if (message_bytes > 0) lists.core().set_message_bytes(message_bytes);
+    lists.core().set_shares_memory(shares_memory);
     DistributedInserter<Item> inserter(lists, inserts);
     // The second build finds the room that the first has made.
     for (int build = 0; build < 2; ++build) {
@@ -122,15 +123,18 @@ TEST_CASE("a partition without any weight has blocks of about equal size") {
     });
 }
 
-TEST_CASE("records travel in any number of messages") {
+TEST_CASE("records travel in any number of messages, or of pieces of shared memory") {
     CELLIST_RANDOM(random, 17u);
     const Shape shape{12, 9};
     const Inserts<Item> inserts = random_inserts(count, 108, random);
     const HostLists<Item> expected = on_one_device(shape, inserts);
     for (const std::uint64_t bytes : {12u, 60u, 100u, 4096u})
         with_all_counts([&](MPI_Comm comm, int ranks) {
-            INFO(ranks << " ranks, messages of " << bytes << " bytes");
-            check(mpi::Partition(comm, shape), {}, inserts, expected, bytes);
+            for (const bool shares : {false, true}) {
+                INFO(ranks << " ranks, " << (shares ? "pieces" : "messages") << " of " << bytes
+                           << " bytes");
+                check(mpi::Partition(comm, shape), {}, inserts, expected, bytes, shares);
+            }
         });
 }
 

@@ -64,6 +64,8 @@ public:
     [[nodiscard]] Definitions definitions() const;
     /// Sets the largest size of a message; for tests.
     void set_message_bytes(std::uint64_t bytes);
+    /// Sets whether the ranks of a host share memory if they can; for tests.
+    void set_shares_memory(bool shares);
 
 private:
     struct Impl;

@@ -51,6 +51,7 @@ TEST_CASE("an OpenCL call that fails on one rank fails on all ranks") {
             const int rank = static_cast<int>(call) % ranks;
             mpi::Lists<Item> lists(device(), partition, {.storage = storage, .capacity_nodes = 16});
             lists.core().set_message_bytes(100);
+            lists.core().set_shares_memory(call % 2 == 0);
             DistributedInserter<Item> inserter(lists, inserts);
             INFO("call " << call << " of rank " << rank);
             const auto work = [&] {
