@@ -7,12 +7,16 @@ RECORD_BYTES = 16
 SENT_BYTES = 20  # a record and its cell
 OCCUPANCY = 16  # records in a cell
 COPIES = 3  # of a foreign record: in the outbox, in the order of the ranks, and where it arrives
-# Of two H200 in one host, from bench/results/mpi-h200.json:
-PINNED = 55e9  # bytes per second from the device or to it
-EXCHANGE = 3.4e9  # bytes per second of a rank between processes of one host, by MPI_Alltoallv
-MESSAGE = 5e-6  # seconds; not measured
+# Measured on a host with two H200:
+SHARED = 42e9  # bytes per second of a rank from its device to those of other ranks, through shared memory
+PINNED = 55e9  # bytes per second from the device or to it, in other page-locked memory
 FIXED = 0.2e-3  # seconds of launches, reductions and short copies in each exchange
+KERNELS = 0.1e-9  # seconds for a sent record, from the outbox to the lists
 BUILD = 7.7e-3 / 2**26  # seconds for a record in a random cell of contiguous lists
+# Not measured:
+HOST_RANKS = 8  # ranks of one host
+NETWORK = 12.5e9  # bytes per second of a rank between hosts
+MESSAGE = 5e-6  # seconds for a message between hosts
 
 
 def blocks(ranks):
@@ -38,9 +42,16 @@ def ghost_part(records, ranks):
     return held / side ** 3 - 1
 
 
+def _messages(receivers, ranks):
+    """The messages to a number of other ranks: none within a host. With several hosts, the model counts all
+    ranks as on other hosts."""
+    return 0 if ranks <= HOST_RANKS else receivers
+
+
 def _transfer(records, messages):
     size = records * SENT_BYTES
-    return FIXED + size * (2 / PINNED + 1 / EXCHANGE) + messages * MESSAGE
+    copies = size / SHARED if messages == 0 else size * (2 / PINNED + 1 / NETWORK) + messages * MESSAGE
+    return FIXED + records * KERNELS + copies
 
 
 def cost(records, ranks, foreign=None):
@@ -48,17 +59,18 @@ def cost(records, ranks, foreign=None):
     it, cells are random."""
     is_random = foreign is None
     part = (ranks - 1) / ranks if is_random else foreign
-    messages = ranks - 1 if is_random else neighbours(ranks)
+    messages = _messages(ranks - 1 if is_random else neighbours(ranks), ranks)
+    ghost_messages = 0 if is_random else _messages(neighbours(ranks), ranks)
     ghosts = 0 if is_random else records * ghost_part(records, ranks)
     sent = records * part
     return {
         "sent_bytes": sent * SENT_BYTES, "messages": messages,
-        "ghost_bytes": ghosts * SENT_BYTES, "ghost_messages": 0 if is_random else neighbours(ranks),
+        "ghost_bytes": ghosts * SENT_BYTES, "ghost_messages": ghost_messages,
         "lists_bytes": (records + ghosts) * RECORD_BYTES + records / OCCUPANCY * 4,
         "exchange_bytes": COPIES * max(sent, ghosts) * SENT_BYTES,
         "build_s": records * BUILD, "exchange_s": _transfer(sent, messages),
         # Contiguous lists are built anew with their ghost cells.
-        "ghosts_s": 0 if is_random else records * BUILD + _transfer(ghosts, neighbours(ranks)),
+        "ghosts_s": 0 if is_random else records * BUILD + _transfer(ghosts, ghost_messages),
     }
 
 
@@ -67,7 +79,9 @@ def _two_digits(value):
 
 
 def _sent(size, messages):
-    return f"{_two_digits(size / 1e6)} MB in {messages:,}" if size else "–"
+    if size == 0:
+        return "–"
+    return f"{_two_digits(size / 1e6)} MB" + (f" in {messages:,}" if messages else "")
 
 
 def _ms(seconds):

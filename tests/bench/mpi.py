@@ -62,7 +62,13 @@ class Model(unittest.TestCase):
     def test_random_cells_send_all_but_a_part(self):
         one = mpi_model.cost(1000, 8)
         self.assertEqual(one["sent_bytes"], 1000 * 7 / 8 * 20)
-        self.assertEqual(one["messages"], 7)
+
+    def test_one_host_sends_no_messages(self):
+        self.assertEqual([mpi_model.cost(1000, ranks)["messages"] for ranks in (8, 64, 1024)], [0, 63, 1023])
+        self.assertEqual([mpi_model.cost(1000, ranks, 0.05)["messages"] for ranks in (8, 64)], [0, 26])
+        # A record takes 20 bytes.
+        self.assertAlmostEqual(mpi_model.cost(8000, 8)["exchange_s"],
+                               mpi_model.FIXED + 7000 * (mpi_model.KERNELS + 20 / mpi_model.SHARED))
 
 
 if __name__ == "__main__":
