@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Ranks of one host exchange the same records through memory that they share as in messages, and
-// use messages if there is no room for such memory.
+// use messages if there is no room for such memory, and for other hosts.
 #include <csignal>
 #include <fstream>
+#include <functional>
+#include <optional>
 #include <sstream>
 
 #include <sys/resource.h>
@@ -15,6 +17,12 @@ using namespace cellist;
 using namespace cellist::test;
 
 namespace {
+
+/// The size of the smallest part of a rank: two pieces of 64 KiB.
+constexpr std::uint64_t least_part_bytes = 2 * 65536;
+
+/// The host that a rank is on, for tests that divide the ranks of one host; empty for its own.
+std::function<int(int rank)> host_of;
 
 /// The bytes that this process shares with others through files of the library.
 std::uint64_t shared_bytes() {
@@ -78,6 +86,15 @@ void check(MPI_Comm comm, const Shape& shape, const Inserts<Item>& inserts) {
 
 }  // namespace
 
+/// Takes the place of the function of the MPI library, which remains as PMPI_Comm_split_type.
+extern "C" int MPI_Comm_split_type(MPI_Comm comm, int type, int key, MPI_Info info,
+                                   MPI_Comm* parts) {
+    if (!host_of) return PMPI_Comm_split_type(comm, type, key, info, parts);
+    int rank = 0;
+    MPI_Comm_rank(comm, &rank);
+    return MPI_Comm_split(comm, host_of(rank), key, parts);
+}
+
 TEST_CASE("any number of records travels in any number of pieces") {
     CELLIST_RANDOM(random, 43u);
     const Shape shape{40};
@@ -103,6 +120,28 @@ TEST_CASE("one rank sends all records, or gets all") {
     Inserts<Item> to_first;
     for (cl_uint i = 0; i < 300; ++i) to_first.add(0, {1.0f, i});
     with_all_counts([&](MPI_Comm comm, int) { check(comm, shape, to_first); });
+}
+
+TEST_CASE("ranks exchange records within their host and with other hosts") {
+    CELLIST_RANDOM(random, 59u);
+    const Shape shape{40};
+    const Inserts<Item> inserts = random_inserts(500, 42, random);
+    for (const bool in_turn : {false, true}) {
+        host_of = [&](int rank) { return in_turn ? rank % 2 : rank / 2; };
+        with_all_counts([&](MPI_Comm comm, int ranks) {
+            INFO(ranks << " ranks, two on a host, or in turn on two hosts: " << in_turn);
+            check(comm, shape, inserts);
+            for (const int from : {0, ranks - 1})
+                check(comm, shape, inserts_of_one_rank(144, from, ranks, 0, 40));
+            mpi::Lists<Item> lists(device(), mpi::Partition(comm, shape));
+            DistributedInserter<Item>(lists, inserts).build(lists);
+            std::uint64_t on_host = 0;
+            for (int rank = 0; rank < ranks; ++rank)
+                if (host_of(rank) == host_of(lists.partition().rank())) ++on_host;
+            REQUIRE(shared_bytes() == (on_host > 1 ? on_host * least_part_bytes : 0));
+        });
+        host_of = nullptr;
+    }
 }
 
 TEST_CASE("memory is shared while lists exchange records, and given back") {
@@ -150,7 +189,7 @@ TEST_CASE("ranks share less memory, or send messages, where one has no room") {
             std::optional<FileSizeLimit> has_no_room;
             if (lists.partition().rank() == ranks - 1) has_no_room.emplace(limit);
             for (int number = 0; number < 2; ++number) build();
-            const std::uint64_t expected = limit < 65536 ? 0 : 2 * 65536;
+            const std::uint64_t expected = limit < least_part_bytes ? 0 : least_part_bytes;
             REQUIRE(shared_bytes() == expected * static_cast<std::uint64_t>(ranks));
         }
     });
