@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Kernels that appends need besides those of the user.
 //
-// One work-item per cell, except for cellist_save_counters; ranges are padded to whole work-groups.
+// One work-item per cell, unless a kernel says otherwise; ranges are padded to whole work-groups.
 #include <cellist/lists.clh>
 
 // Inserts all records of other lists of the same shape.
@@ -10,6 +10,57 @@ kernel void cellist_insert_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
     const uint cell = get_global_id(0);
     if (cell >= cellist_cells(from)) return;
     cellist_for_each(from, cell, node) cellist_insert(lists, cell, cellist_get(from, node));
+}
+
+// Makes the lengths of contiguous lists the counts of counted lists.
+kernel void cellist_count_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
+                                CELLIST_LISTS(CELLIST_RECORD, from)) {
+    const uint cell = get_global_id(0);
+    if (cell >= cellist_cells(from)) return;
+    *cellist_cell_count(lists_heads, cellist_view_of(lists), cell) = cellist_length(from, cell);
+}
+
+// The last cell from `cell` on whose list begins at node i or before it. The steps double: the cell
+// is often close.
+static inline uint cellist_cell_of_node(global const uint* offsets, uint cells, uint cell, uint i) {
+    uint step = 1;
+    for (; step < cells - cell && offsets[cell + step] <= i; step *= 2) cell += step;
+    uint end = cell + min(step, cells - cell);
+    while (end - cell > 1) {
+        const uint middle = cell + (end - cell) / 2;
+        if (offsets[middle] <= i)
+            cell = middle;
+        else
+            end = middle;
+    }
+    return cell;
+}
+
+// Copies contiguous lists to the begin of other contiguous lists, as far as these go.
+//
+// On processors, one work-item per CELLIST_MOVE_TILE records, however long the lists are. Elsewhere
+// CELLIST_MOVE_LANES, which move consecutive records at a time, to read and write whole lines.
+#if CELLIST_ONE_THREAD_PER_WORK_GROUP
+#define CELLIST_LANES 1u
+#else
+#define CELLIST_LANES CELLIST_MOVE_LANES
+#endif
+
+kernel void cellist_move_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
+                               CELLIST_LISTS(CELLIST_RECORD, from)) {
+    const uint cells = cellist_cells(from);
+    global const uint* offsets = (global const uint*)from_heads;
+    global const uint* heads = (global const uint*)lists_heads;
+    const ulong item = get_global_id(0);
+    const ulong first = item / CELLIST_LANES * CELLIST_MOVE_TILE;
+    const uint end = (uint)min(first + CELLIST_MOVE_TILE, (ulong)offsets[cells]);
+    uint cell = 0;
+    for (ulong i = first + item % CELLIST_LANES; i < end; i += CELLIST_LANES) {
+        const uint node = (uint)i;
+        cell = cellist_cell_of_node(offsets, cells, cell, node);
+        const uint to = heads[cell] + (node - offsets[cell]);
+        if (to < heads[cell + 1]) cellist_get(lists, to) = cellist_get(from, node);
+    }
 }
 
 // Saves the counters of linked lists, then clears the counts of records that are not stored.

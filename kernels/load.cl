@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Replaces all lists by those of a contiguous copy, in their order.
+// Replaces all linked lists or slots by the lists of a contiguous copy, in their order.
 //
 //   from      the copy; a list begins where the copy says
 //   offsets   cells + 1   where each list goes if lists are contiguous; these say how long it is
@@ -27,14 +27,7 @@ kernel void cellist_load(CELLIST_LISTS(CELLIST_RECORD, lists), CELLIST_LISTS(CEL
         }
         return;
     }
-    const int fixed = cellist_has_mode(lists_view, CELLIST_FIXED);
-    if (fixed) {
-        lists_heads[cell] = end - first;
-    } else {
-        lists_heads[cell] = first;
-        if (cell + 1 == cellist_cells(lists)) lists_heads[cell + 1] = end;
-        *cellist_cell_count(lists_heads, lists_view, cell) = end - first;
-    }
-    uint node = fixed ? cellist_fixed_begin(lists_heads, lists_view, cell) : first;
+    lists_heads[cell] = end - first;
+    uint node = cellist_fixed_begin(lists_heads, lists_view, cell);
     for (uint i = first; i < end; ++i) cellist_get(lists, node++) = cellist_get(from, source++);
 }

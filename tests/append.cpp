@@ -66,19 +66,78 @@ TEST_CASE("a pool that is too small for an append grows, and keeps each record o
     }
 }
 
-TEST_CASE("regions of a GPU take the existing records, too") {
+TEST_CASE("lists built in regions or partitions take appends, and the next build is one pass") {
     CELLIST_RANDOM(random, 413u);
+    for (const bool as_gpu : {true, false}) {
+        const Device on = as_gpu ? like_gpu() : Device::choose();
+        Lists<Item> lists(on, {20'000}, {.storage = Storage::counted});
+        Inserter inserter(lists, on);
+        for (int step = 0; step < 3; ++step) {
+            const Inserts<Item> built = random_inserts(200'000, 20'000, random);
+            const BuildReport report = inserter.build(lists, built);
+            if (step > 0 && (as_gpu || passes_of(Storage::counted, 300'000) == 1))
+                REQUIRE(report.passes == 1);
+            Oracle<Item> oracle = oracle_of(built, 20'000);
+            for (const std::size_t count : {7u, 5000u, 100'000u}) {
+                const Inserts<Item> inserts = random_inserts(count, 20'000, random);
+                require_appended(append(inserter, lists, inserts), oracle.size(), count);
+                oracle.merge(oracle_of(inserts, 20'000));
+                require_sound(lists, oracle.size());
+                require_same(lists.download(), oracle);
+            }
+        }
+    }
+}
+
+TEST_CASE("lists of any length move when counted lists grow") {
+    CELLIST_RANDOM(random, 414u);
+    constexpr cl_uint cells = 5000;
+    for (const bool as_gpu : {true, false}) {
+        const Device on = as_gpu ? like_gpu() : Device::choose();
+        for (const cl_uint longest : {1u, 63u, 511u, 512u, 513u, 70'000u}) {
+            INFO((as_gpu ? "GPU, " : "") << longest << " records in a list");
+            Lists<Item> lists(on, {cells}, {.storage = Storage::counted});
+            Inserter inserter(lists, on);
+            Inserts<Item> first;
+            for (const cl_uint cell : {0u, 7u, 8u, 3000u, cells - 1})
+                for (cl_uint i = 0; i < longest; ++i) first.add(cell, {1.0f, i});
+            require_complete(inserter.build(lists, first), first.size());
+            Oracle<Item> oracle = oracle_of(first, cells);
+            for (int step = 0; step < 3; ++step) {
+                Inserts<Item> more = random_inserts(100, cells, random);
+                more.add(7, {2.0f, longest});
+                require_appended(append(inserter, lists, more), oracle.size(), more.size());
+                oracle.merge(oracle_of(more, cells));
+                require_sound(lists, oracle.size());
+                require_same(lists.download(), oracle);
+            }
+        }
+    }
+}
+
+TEST_CASE("the pool of an append may need the memory of regions") {
+    CELLIST_RANDOM(random, 415u);
     const Device gpu = like_gpu();
-    Lists<Item> lists(gpu, {20'000}, {.storage = Storage::counted});
-    Inserter inserter(lists, gpu);
-    Oracle<Item> oracle;
-    for (const std::size_t count : {100'000u, 7u, 5000u, 100'000u}) {
-        const Inserts<Item> inserts = random_inserts(count, 20'000, random);
-        require_appended(append(inserter, lists, inserts), oracle.size(), count);
-        oracle.merge(oracle_of(inserts, 20'000));
+    const Inserts<Item> first = random_inserts(70'000, 5000, random);
+    const Inserts<Item> second = random_inserts(7000, 5000, random);
+    const auto bytes_after_builds = [&](std::uint64_t budget) {
+        Lists<Item> lists(gpu, {5000}, {.storage = Storage::counted, .budget_bytes = budget});
+        Inserter inserter(lists, gpu);
+        for (int build = 0; build < 2; ++build) inserter.build(lists, first);
+        const std::uint64_t bytes = lists.pool_bytes();
+        require_appended(append(inserter, lists, second), first.size(), second.size());
+        REQUIRE(lists.pool_bytes() <= budget);
+        Oracle<Item> oracle = oracle_of(first, 5000);
+        oracle.merge(oracle_of(second, 5000));
         require_sound(lists, oracle.size());
         require_same(lists.download(), oracle);
-    }
+        require_complete(inserter.build(lists, first), first.size());
+        REQUIRE(lists.pool_bytes() <= budget);
+        return bytes;
+    };
+    const std::uint64_t exact = bytes_after_builds(std::uint64_t{1} << 30);
+    bytes_after_builds(exact);
+    bytes_after_builds(exact + second.size() * sizeof(Item) / 2);
 }
 
 TEST_CASE("pools grow by half, so that few of many appends move the records") {

@@ -32,6 +32,10 @@
 // Work-items that divide the memory into regions.
 #define CELLIST_REGION_SCAN_GROUP 1024
 
+// Consecutive records that an append moves together, and the work-items of GPUs that share them.
+#define CELLIST_MOVE_TILE 512u
+#define CELLIST_MOVE_LANES 64u
+
 // Inserts that are counted for one cell; more of them are counted as dropped.
 #define CELLIST_CELL_COUNT_MAX 0x80000000u
 

@@ -45,19 +45,7 @@ void ListsCore::start_build() {
 
 void ListsCore::begin_pass() {
     storage_->in_use().begin_pass();
-    if (append_ && append_->copy) insert_from(*append_->copy);
-}
-
-/// Inserts all records of a copy again.
-void ListsCore::insert_from(const PackedLists& copy) {
-    const ListStorage& storage = storage_->in_use();
-    Arguments arguments;
-    storage.add_to(arguments, Inserts::accepted);
-    storage.add_contiguous_to(arguments, copy.records, copy.offsets);
-    kernels_
-        ->get({{"append.cl", kernels::append_cl}}, "cellist_insert_lists",
-              storage.mode() | CELLIST_CONTIGUOUS)
-        .enqueue(cell_range(), arguments);
+    if (append_ && append_->copy) storage_->in_use().insert(*append_->copy);
 }
 
 bool ListsCore::review(BuildReport& report) {
@@ -121,21 +109,27 @@ std::uint64_t ListsCore::remove_if(const std::string& expression, const Values& 
     SortKey key{expression, 32, Order::ascending, values, "remove_if expression"};
     check_key(key);
     key.expression = "(" + expression + ") != 0";
+    const ExpressionProgram program = key_program(key);
+    return shorten([&](const PackedLists& copy, const cl::Buffer& lengths) {
+        Arguments arguments;
+        storage_->in_use().add_contiguous_to(arguments, *copy.records, copy.offsets);
+        arguments.add(lengths);
+        arguments.append(program.values);
+        kernels_
+            ->get({{"remove.cl", kernels::remove_cl}}, "cellist_remove", CELLIST_CONTIGUOUS,
+                  program.source, program.types)
+            .enqueue(cell_range(), arguments);
+    });
+}
+
+std::uint64_t ListsCore::shorten(
+    const std::function<void(const PackedLists&, const cl::Buffer&)>& write_lengths) {
     require_buildable();
     make_ready();
     std::unique_ptr<PackedLists> lists = packed();
-    const ExpressionProgram program = key_program(key);
     const Memory offsets(device_.state(), shape_.cells() + 1, sizeof(cl_uint), "new offsets");
+    write_lengths(*lists, offsets.cl());
     ListStorage& storage = storage_->in_use();
-    Arguments arguments;
-    storage.add_contiguous_to(arguments, lists->records, lists->offsets);
-    arguments.add(offsets.cl());
-    arguments.append(program.values);
-    kernels_
-        ->get({{"remove.cl", kernels::remove_cl}}, "cellist_remove", CELLIST_CONTIGUOUS,
-              program.source, program.types)
-        .enqueue(cell_range(), arguments);
-
     std::unique_ptr<CellScan> once;
     CellScan& left = scan(once);
     CellScan::Totals totals;

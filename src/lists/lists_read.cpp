@@ -153,14 +153,21 @@ std::unique_ptr<PackedLists> ListsCore::packed() const {
     auto lists = std::make_unique<PackedLists>();
     lists->offsets =
         Memory(device_.state(), shape_.cells() + 1, sizeof(cl_uint), "offsets of a copy");
-    lists->records =
-        Memory(device_.state(), most_records(), kernels_->record().size, "copy of all records");
+    const std::uint64_t records = most_records();
+    const std::size_t record_bytes = kernels_->record().size;
+    lists->records = storage_->in_use().spare_memory(records * record_bytes);
+    if (!lists->records)
+        lists->records = std::make_shared<Memory>(device_.state(), records, record_bytes,
+                                                  "copy of all records");
     std::unique_ptr<CellScan> once;
     CellScan& lengths = scan(once);
     enqueue_offsets(lengths, lists->offsets.cl());
     lists->reading.add(lengths.read_later(lists->totals));
-    gather(0, shape_.cells(), lists->offsets.cl(), lists->records.cl(),
-           record_declaration(*kernels_), "");
+    if (mode() == CELLIST_CONTIGUOUS)
+        storage_->in_use().copy_nodes(records, *lists->records);
+    else
+        gather(0, shape_.cells(), lists->offsets.cl(), lists->records->cl(),
+               record_declaration(*kernels_), "");
     return lists;
 }
 

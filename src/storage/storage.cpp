@@ -84,11 +84,10 @@ void ListStorage::allocate_saved(const Memory& memory) {
         saved_ = Memory(pool_.owner(), memory.size_bytes(), 1, "second copy of the heads");
 }
 
-void ListStorage::copy(const Memory& from, const Memory& to) const {
-    if (from.size_bytes() == 0) return;
+void ListStorage::copy(const Memory& from, const Memory& to, std::uint64_t bytes) const {
+    if (bytes == 0) return;
     opencl([&] {
-        pool_.owner()->ordered_queue().enqueueCopyBuffer(from.cl(), to.cl(), 0, 0,
-                                                         from.size_bytes());
+        pool_.owner()->ordered_queue().enqueueCopyBuffer(from.cl(), to.cl(), 0, 0, bytes);
     });
 }
 
@@ -125,13 +124,23 @@ void ListStorage::update(BuildReport& report, std::uint64_t demand, std::uint64_
     report.capacity_nodes = pool_.capacity_nodes();
 }
 
+void ListStorage::insert(const PackedLists& copy) {
+    Arguments arguments;
+    add_to(arguments, Inserts::accepted);
+    add_contiguous_to(arguments, *copy.records, copy.offsets);
+    kernels_
+        .get({{"append.cl", kernels::append_cl}}, "cellist_insert_lists",
+             mode() | CELLIST_CONTIGUOUS)
+        .enqueue(Range::padded(shape_.cells()), arguments);
+}
+
 void ListStorage::load(const PackedLists& packed, const Memory& offsets,
                        const CellScan::Totals& totals) {
     reserve(totals.sum, totals.longest);
     clear();
     Arguments arguments;
     add_to(arguments);
-    add_contiguous_to(arguments, packed.records, packed.offsets);
+    add_contiguous_to(arguments, *packed.records, packed.offsets);
     arguments.add(offsets.cl());
     kernels_.get({{"load.cl", kernels::load_cl}}, "cellist_load", mode() | CELLIST_CONTIGUOUS)
         .enqueue(Range::padded(std::max(shape_.cells(), pool_.counter_elements())), arguments);

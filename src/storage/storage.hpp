@@ -32,7 +32,7 @@ enum class Inserts { refused, accepted };
 /// A copy of all lists, contiguous and in order.
 struct PackedLists {
     Memory offsets;  ///< cells + 1
-    Memory records;
+    std::shared_ptr<const Memory> records;
     CellScan::Totals totals;  ///< of the lengths, after the wait for `reading`
     ReadbackFence reading;
 };
@@ -67,6 +67,12 @@ public:
     virtual void return_to_mark() {}
     /// Enqueues what the next run of the kernels needs. Does not block.
     virtual void begin_pass() { clear(); }
+    /// Enqueues the insert of all records of a copy, at the begin of a pass. Does not block.
+    virtual void insert(const PackedLists& copy);
+    /// Memory of at least this size that an append does not use; null if there is none.
+    [[nodiscard]] virtual std::shared_ptr<const Memory> spare_memory(std::uint64_t) const {
+        return {};
+    }
     /// Enqueues what follows a run of the kernels, the reading of its counters above all. True if
     /// another pass must follow that needs no review of this one. Does not block.
     virtual bool end_pass() = 0;
@@ -94,7 +100,8 @@ public:
     /// Replaces all lists by those of a copy, in their order. `offsets` says where they go if they
     /// are contiguous; with the offsets of the copy, all of its records. `totals` are those of the
     /// new lengths. Throws OverflowError.
-    void load(const PackedLists& copy, const Memory& offsets, const CellScan::Totals& totals);
+    virtual void load(const PackedLists& copy, const Memory& offsets,
+                      const CellScan::Totals& totals);
 
     /// Enqueues a check for links, offsets and counts that are inconsistent, or differ from those
     /// of the last build. Does not block. Call the result once, when that build is finished; that
@@ -125,6 +132,11 @@ public:
     /// The same for a copy of the lists whose mode is CELLIST_CONTIGUOUS.
     void add_contiguous_to(Arguments& arguments, const Memory& records,
                            const Memory& offsets) const;
+
+    /// Enqueues a copy of the first `count` nodes.
+    void copy_nodes(std::uint64_t count, const Memory& to) const {
+        copy(pool_.nodes(), to, count * pool_.node_bytes());
+    }
 
     [[nodiscard]] const NodePool& pool() const { return pool_; }
     [[nodiscard]] NodePool& pool() { return pool_; }
@@ -179,8 +191,8 @@ protected:
     [[nodiscard]] bool can_save(const Memory& memory) const;
     /// Makes `saved_` as large as this memory.
     void allocate_saved(const Memory& memory);
-    /// Enqueues a copy.
-    void copy(const Memory& from, const Memory& to) const;
+    /// Enqueues a copy of the first bytes.
+    void copy(const Memory& from, const Memory& to, std::uint64_t bytes) const;
     /// Nothing is in the lists any more, and a build may follow.
     void expect_nothing() { expected_ = std::make_shared<Expected>(); }
 

@@ -49,7 +49,7 @@ void CountedStorage::release_pool() noexcept {
 }
 
 /// These go when the pool grows: another capacity takes other partitions.
-void CountedStorage::set_partitions(std::unique_ptr<Partitions> partitions) {
+void CountedStorage::set_partitions(std::shared_ptr<Partitions> partitions) {
     partitions_ = std::move(partitions);
     pool_.set_replaceable_bytes(partitions_ ? partitions_->plan().bytes() : 0);
 }
@@ -57,6 +57,7 @@ void CountedStorage::set_partitions(std::unique_ptr<Partitions> partitions) {
 void CountedStorage::start(const Kept& kept) {
     ListStorage::start(kept);
     counted_ = false;
+    if (kept.records > 0) return;
     if (Preparation::current() != nullptr && !has_counted_) return set_partitions(nullptr);
     if (partitions_ && partitions_->plan().records >= capacity_nodes()) return;
     set_partitions(nullptr);
@@ -75,24 +76,73 @@ std::unique_ptr<Partitions> CountedStorage::partitions_for_pool() const {
 }
 
 void CountedStorage::begin_pass() {
-    if (partitions_) {
+    if (uses_partitions()) {
         if (partitions_->plan().has_regions())
             plan_regions();
         else
             pool_.clear(partitions_->heads(), 0, 0, partitions_->plan().words_to_clear());
         view_.mode = CELLIST_PARTITIONED;
     } else if (!counted_) {
-        clear();
+        if (kept_.records > 0)
+            clear_words(0, 0, 0);
+        else
+            clear();
         view_.mode = CELLIST_COUNTING;
         has_counted_ = true;
     } else {
-        clear_words(0, counts_at(), shape_.cells());
+        clear_words(0, counts_at(), kept_.records > 0 ? 0 : shape_.cells());
     }
+}
+
+/// Makes the lists of a copy the first inserts, and in the filling pass the begin of the lists.
+void CountedStorage::insert(const PackedLists& copy) {
+    count_lists(copy, copy.offsets);
+    if (counted_) move_lists(copy);
+}
+
+void CountedStorage::load(const PackedLists& packed, const Memory& offsets,
+                          const CellScan::Totals& totals) {
+    reserve(totals.sum, totals.longest);
+    clear_words(0, 0, 0);
+    copy(offsets, pool_.heads(), offsets.size_bytes());
+    count_lists(packed, offsets);
+    move_lists(packed);
+    expected_ = std::make_shared<Expected>(Expected{totals.sum, totals.hash});
+}
+
+/// Enqueues counts that are the lengths of lists with these offsets.
+void CountedStorage::count_lists(const PackedLists& copy, const Memory& offsets) {
+    Arguments arguments;
+    add_to(arguments, Inserts::refused);
+    add_contiguous_to(arguments, *copy.records, offsets);
+    kernels_
+        .get({{"append.cl", kernels::append_cl}}, "cellist_count_lists",
+             mode() | CELLIST_CONTIGUOUS)
+        .enqueue(Range::padded(shape_.cells()), arguments);
+}
+
+/// Enqueues a copy of the lists of a copy to the begin of the lists, as far as these go.
+void CountedStorage::move_lists(const PackedLists& copy) {
+    Arguments arguments;
+    add_to(arguments, Inserts::refused);
+    add_contiguous_to(arguments, *copy.records, copy.offsets);
+    const std::uint64_t most = copy.records->size_bytes() / record().size;
+    const bool is_alone = pool_.owner()->info.one_thread_per_work_group;
+    kernels_.get({{"append.cl", kernels::append_cl}}, "cellist_move_lists", mode())
+        .enqueue(Range::padded((most / CELLIST_MOVE_TILE + 1) *
+                               (is_alone ? 1 : CELLIST_MOVE_LANES)),
+                 arguments);
+}
+
+/// The partitions, which only builds use.
+std::shared_ptr<const Memory> CountedStorage::spare_memory(std::uint64_t bytes) const {
+    if (!partitions_ || partitions_->nodes().size_bytes() < bytes) return {};
+    return {partitions_, &partitions_->nodes()};
 }
 
 bool CountedStorage::end_pass() {
     view_.mode = CELLIST_CONTIGUOUS;
-    if (partitions_) {
+    if (uses_partitions()) {
         move_from_partitions();
         reading_.add(partitions_->starts().read_later(&partitioned_, sizeof partitioned_));
         reading_.add(pool_.read(counters_));
@@ -223,7 +273,7 @@ bool CountedStorage::review_partitions(BuildReport& report) {
 
 bool CountedStorage::review(BuildReport& report) {
     reading_.wait();
-    if (partitions_) return review_partitions(report);
+    if (uses_partitions()) return review_partitions(report);
     const Counters::Sum counting = counting_.sum();
     const std::uint64_t demand = demand_.sum + counting.dropped;
     const std::uint64_t kept = std::min<std::uint64_t>(demand_.sum, capacity_nodes());
@@ -257,6 +307,7 @@ void CountedStorage::make_room(const BuildReport& report) {
                                     " records is over the limit of Storage::counted",
                                 report);
         pool_.grow(demand, report);
+        if (!pool_.has_room_for(0)) set_partitions(nullptr);
     }
     scan_.write_offsets(pool_.heads().cl(), pool_.heads().cl(), capacity_nodes());
 }

@@ -72,7 +72,7 @@ void FixedStorage::clear() {
 /// Inserts change only counts. Those of dropped records do not stay.
 void FixedStorage::mark() {
     allocate_saved(pool_.heads());
-    copy(pool_.heads(), saved_);
+    copy(pool_.heads(), saved_, saved_.size_bytes());
     Arguments arguments;
     add_to(arguments, pool_.nodes(), saved_, view(Inserts::refused));
     kernels_.get({{"append.cl", kernels::append_cl}}, "cellist_trim_counts", mode())
@@ -81,7 +81,7 @@ void FixedStorage::mark() {
 }
 
 void FixedStorage::rewind() {
-    copy(saved_, pool_.heads());
+    copy(saved_, pool_.heads(), saved_.size_bytes());
     clear_words(0, 0, 0);
 }
 

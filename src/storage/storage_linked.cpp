@@ -68,7 +68,7 @@ void LinkedStorage::run(const char* name, const Range& range) {
 
 void LinkedStorage::rewind() {
     run("cellist_rewind_heads", Range::padded(shape_.cells()));
-    copy(saved_, pool_.counters());
+    copy(saved_, pool_.counters(), saved_.size_bytes());
 }
 
 void LinkedStorage::return_to_mark() {

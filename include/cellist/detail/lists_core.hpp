@@ -81,6 +81,11 @@ public:
     /// Removes the records for which an OpenCL C expression of `record` is not 0. Returns their
     /// number. Blocks.
     std::uint64_t remove_if(const std::string& expression, const Values& values);
+    /// Keeps the first records of each list, and returns the number of the others. The function
+    /// takes a copy of all lists, in which it may change the order of a list, and writes how many
+    /// of each list stay: one word a cell. Blocks.
+    std::uint64_t shorten(
+        const std::function<void(const PackedLists&, const cl::Buffer&)>& write_lengths);
 
     void clear();
     /// Sorts at least the first `top_k` nodes of each list.
@@ -176,7 +181,6 @@ private:
     void enqueue_lengths(const cl::Buffer& lengths) const;
     void enqueue_offsets(CellScan& scan, const cl::Buffer& offsets) const;
     [[nodiscard]] std::unique_ptr<PackedLists> packed() const;
-    void insert_from(const PackedLists& lists);
     void restore(bool without_pool) const;
     void gather(std::uint64_t begin, std::uint64_t end, const cl::Buffer& offsets,
                 const cl::Buffer& values, const std::string& declaration,
