@@ -77,16 +77,16 @@ kernel void cellist_copy_box(CELLIST_LISTS(CELLIST_SENT, send),
     }
 }
 
-// Inserts the records of the rank's own block from a copy of all lists; leaves out the ghost cells.
+// The lengths of the lists of the rank's own block; 0 for the other cells.
 //
-// One work-item per cell of the block.
-kernel void cellist_keep_own(CELLIST_LISTS(CELLIST_RECORD, lists),
-                             global const CELLIST_RECORD_TYPE* records, global const uint* offsets,
-                             const uint4 first, const uint4 box) {
-    const ulong i = get_global_id(0);
-    if (i >= (ulong)box.x * box.y * box.z * box.w) return;
-    const uint4 at = first + cellist_place_in_box((uint)i, box);
-    const uint cell = cellist_cell_at_place(cellist_view_of(lists), at);
-    for (uint node = offsets[cell]; node < offsets[cell + 1]; ++node)
-        cellist_insert(lists, cell, records[node]);
+// One work-item per cell.
+kernel void cellist_own_lengths(CELLIST_LISTS(CELLIST_RECORD, lists), global uint* lengths,
+                                const uint4 first, const uint4 box) {
+    const cellist_view view = cellist_view_of(lists);
+    const uint cell = get_global_id(0);
+    if (cell >= view.cells) return;
+    const uint4 extent = (uint4)(view.extent[0], view.extent[1], view.extent[2], view.extent[3]);
+    const uint4 at = cellist_place_in_box(cell, extent) - first;
+    const bool is_own = at.x < box.x && at.y < box.y && at.z < box.z && at.w < box.w;
+    lengths[cell] = is_own ? cellist_length(lists, cell) : 0;
 }

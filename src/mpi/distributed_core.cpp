@@ -164,27 +164,15 @@ struct DistributedCore::Impl {
         });
     }
 
-    /// Builds the lists anew from a copy of the rank's own records.
     void remove_ghosts() {
-        Memory offsets(device, lists.shape().cells() + 1, sizeof(cl_uint), "offsets of a copy");
-        Memory records;
-        const std::size_t record_bytes = definitions.records.back().size;
-        lists.pack(
-            offsets.cl(),
-            [&](std::uint64_t count) -> const cl::Buffer& {
-                records = Memory(device, count, record_bytes, "copy of all records");
-                return records.cl();
-            },
-            "", "");
-        lists.build([&] {
+        lists.shorten([&](const PackedLists&, const cl::Buffer& lengths) {
             Arguments arguments;
             lists.add_to(arguments);
-            arguments.add(records.cl());
-            arguments.add(offsets.cl());
+            arguments.add(lengths);
             arguments.add(vector_of(plan->ghosts()));
             arguments.add(vector_of(plan->own().extent));
-            kernels.get("cellist_keep_own", arguments.modes())
-                .enqueue(box_range(plan->own().extent), arguments);
+            kernels.get("cellist_own_lengths", arguments.modes())
+                .enqueue(Range::padded(lists.shape().cells()), arguments);
         });
         has_ghosts = false;
     }

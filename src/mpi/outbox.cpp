@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <utility>
 
+#include <cellist/detail/build.hpp>
+
 #include "cellist_mpi_kernels.hpp"
+#include "device/device_state.hpp"
 #include "device/distribution.hpp"
-#include "storage/container_storage.hpp"
 
 namespace cellist::detail {
 
@@ -14,6 +16,14 @@ namespace {
 
 /// The nodes of a new outbox, which grows to the demand of a build.
 constexpr std::uint64_t first_capacity = 65536;
+
+/// Lists that drop what is too much need no look at the counters between two passes. Lists that grow
+/// take one pass on processors, through partitions.
+ListsOptions send_options(const DeviceInfo& device) {
+    return {.storage = Storage::counted,
+            .overflow = device.one_thread_per_work_group ? Overflow::grow : Overflow::drop,
+            .capacity_nodes = 0};
+}
 
 /// The struct of a record and its cell, as cellist_node_T has them.
 RecordType sent_type(const RecordType& record) {
@@ -57,7 +67,8 @@ Outbox::Outbox(const MemoryOwner& device, ExchangeKernels& kernels, const Partit
       distribution_(plan.distribution()),
       send_(std::make_shared<ListsCore>(device, kernels.sent_definitions(),
                                         Shape{communicator_.size()},
-                                        ListsOptions{.storage = Storage::counted})),
+                                        send_options(device->info))),
+      send_offsets_(static_cast<std::size_t>(communicator_.size()) + 1, 0),
       cuts_(device, plan.cuts().size(), sizeof plan.cuts()[0], "cuts"),
       exchange_(communicator_, device) {
     pool_.allocate(communicator_.size() > 1 ? first_capacity : 0);
@@ -85,6 +96,7 @@ void Outbox::add_to(Arguments& arguments, cl_uint inserts) const {
 
 void Outbox::fill(const std::function<void(cl_uint)>& run, cl_uint inserts) {
     pool_.start_build();
+    Counters::Sum sum;
     for (;;) {
         clear();
         run(inserts);
@@ -92,7 +104,7 @@ void Outbox::fill(const std::function<void(cl_uint)>& run, cl_uint inserts) {
         ReadbackFence fence;
         fence.add(pool_.read(counters));
         fence.wait();
-        const Counters::Sum sum = counters.sum();
+        sum = counters.sum();
         if (sum.dropped == 0) break;
         const BuildReport report{.attempted = sum.allocated + sum.dropped};
         pool_.require(report.attempted, report);
@@ -100,6 +112,11 @@ void Outbox::fill(const std::function<void(cl_uint)>& run, cl_uint inserts) {
         // The rank's own records are already in its lists.
         inserts = CELLIST_INSERT_FOREIGN;
     }
+    if (sum.allocated == 0) {
+        std::fill(send_offsets_.begin(), send_offsets_.end(), 0);
+        return;
+    }
+    reserve_send_lists(sum.allocated);
     fill_send_lists([&](ListsCore& send) {
         const cellist_view outbox = view();
         Arguments arguments;
@@ -111,16 +128,32 @@ void Outbox::fill(const std::function<void(cl_uint)>& run, cl_uint inserts) {
                          sizeof distribution_.domain);
         arguments.add(cuts_);
         kernels_.get("cellist_route", arguments.modes())
-            .enqueue(Range::padded(outbox.pool_nodes), arguments);
+            .enqueue(Range::padded(std::min<std::uint64_t>(sum.end, outbox.pool_nodes)), arguments);
     });
 }
 
+/// With room for a part more: the number of records changes from step to step.
+void Outbox::reserve_send_lists(std::uint64_t records) {
+    NodePool& pool = send_pool();
+    if (records <= pool.capacity_nodes()) return;
+    pool.require(records, {.attempted = records});
+    const std::uint64_t roomy = records + records / 8;
+    pool.allocate(pool.refusal(roomy) ? records : roomy);
+}
+
+void Outbox::fill_send_lists(const std::function<void(ListsCore&)>& insert) {
+    for (;;) {
+        const auto build = Build::start({send_.get()}, [&] { insert(*send_); });
+        send_->make_ready_for_commands();
+        send_pool().heads().read(send_offsets_.data(), send_offsets_.size() * sizeof(cl_uint));
+        const BuildReport report = build->finish().front();
+        if (report.dropped == 0) return;
+        reserve_send_lists(report.attempted);
+    }
+}
+
 void Outbox::send() {
-    const NodePool& pool = send_->storage().in_use().pool();
-    std::vector<cl_uint> offsets(static_cast<std::size_t>(communicator_.size()) + 1, 0);
-    communicator_.together(
-        [&] { pool.heads().read(offsets.data(), offsets.size() * sizeof offsets[0]); });
-    received_ = exchange_.run(pool.nodes(), offsets, pool.node_bytes());
+    received_ = exchange_.run(send_pool().nodes(), send_offsets_, send_pool().node_bytes());
 }
 
 void Outbox::insert_received(Arguments arguments) {

@@ -5,11 +5,13 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <cellist/detail/lists_core.hpp>
 
 #include "mpi/exchange.hpp"
 #include "mpi/partition_plan.hpp"
+#include "storage/container_storage.hpp"
 #include "storage/node_pool.hpp"
 
 namespace cellist::detail {
@@ -43,12 +45,11 @@ public:
 
     /// Fills the outbox: `run` runs kernels that insert what its argument says, CELLIST_INSERT_...
     /// It runs again for foreign records alone while the outbox is too small. Then puts the records
-    /// in the order of the ranks. Blocks.
+    /// in the order of the ranks, if there are any. Blocks.
     void fill(const std::function<void(cl_uint)>& run, cl_uint inserts);
-    /// Fills the send lists, which have one cell for each rank: `insert` inserts into them.
-    void fill_send_lists(const std::function<void(ListsCore&)>& insert) {
-        send_->build([&] { insert(*send_); });
-    }
+    /// Fills the send lists, which have one cell for each rank: `insert` inserts into them. It runs
+    /// again while they are too small. Blocks.
+    void fill_send_lists(const std::function<void(ListsCore&)>& insert);
     /// Sends the send lists. Collective. Blocks.
     void send();
     /// Enqueues a kernel that inserts the records that have arrived into the container of the
@@ -63,12 +64,15 @@ public:
 private:
     [[nodiscard]] cellist_view view() const;
     void clear() { pool_.clear(pool_.heads(), CELLIST_NONE, 0, 1); }
+    [[nodiscard]] NodePool& send_pool() const { return send_->storage().in_use().pool(); }
+    void reserve_send_lists(std::uint64_t records);
 
     const Communicator& communicator_;
     ExchangeKernels& kernels_;
     NodePool pool_;
     cellist_distribution distribution_;
     std::shared_ptr<ListsCore> send_;
+    std::vector<cl_uint> send_offsets_;  ///< one for each rank, and the end of the last list
     Memory cuts_;
     Exchange exchange_;
     std::uint64_t received_ = 0;

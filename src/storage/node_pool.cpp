@@ -53,12 +53,17 @@ std::string mebibytes(std::uint64_t bytes) {
 
 Counters::Sum Counters::sum() const {
     Sum sum;
+    std::uint64_t most = 0;
     for (const cellist_shard& shard : std::span(elements_).first(shard_elements_)) {
         sum.allocated += shard.allocated;
+        most = std::max<std::uint64_t>(most, shard.allocated);
         sum.dropped += wide(shard.dropped_low, shard.dropped_high);
         sum.rejected += wide(shard.rejected_low, shard.rejected_high);
         sum.late += wide(shard.late_low, shard.late_high);
     }
+    // Each round has a block of every shard, and the last element is no shard.
+    const std::uint64_t rounds = (most + CELLIST_BLOCK_NODES - 1) / CELLIST_BLOCK_NODES;
+    sum.end = rounds * CELLIST_BLOCK_NODES * (shard_elements_ - 1);
     for (const cellist_shard& element :
          std::span(elements_).subspan(shard_elements_, thread_slots_)) {
         const auto block = std::bit_cast<cellist_thread_block>(element);

@@ -26,6 +26,7 @@ class CELLIST_API Counters {
 public:
     struct Sum {
         std::uint64_t allocated = 0;  ///< nodes that are left in per-thread blocks count as free
+        std::uint64_t end = 0;        ///< no address from here on is allocated
         std::uint64_t dropped = 0;
         std::uint64_t rejected = 0;
         std::uint64_t late = 0;
