@@ -37,7 +37,7 @@ void ListsCore::start_build() {
         append_->is_marked = true;
     } else {
         append_->copy = packed();
-        kept.offsets = &append_->copy->offsets;
+        kept.offsets = append_->copy->offsets.get();
         release_kept_buffers();
         storage.start(kept);
     }
@@ -58,7 +58,7 @@ bool ListsCore::review(BuildReport& report) {
     append_->is_marked = false;
     append_->copy = packed();
     release_kept_buffers();
-    storage_->in_use().set_kept_offsets(append_->copy->offsets);
+    storage_->in_use().set_kept_offsets(*append_->copy->offsets);
     (void)storage_->review(report);
     return false;
 }
@@ -74,7 +74,7 @@ void ListsCore::restore(bool without_pool) const {
         storage.return_to_mark();
     } else if (append->copy) {
         append->copy->reading.wait();
-        storage.load(*append->copy, append->copy->offsets, append->copy->totals);
+        storage.load(*append->copy, *append->copy->offsets, append->copy->totals);
     }
 }
 
@@ -101,7 +101,7 @@ std::shared_ptr<ListsCore> ListsCore::copy() const {
         std::make_shared<ListsCore>(device_.state(), kernels_->definitions(), shape_, options_);
     made->storage_->adopt_choice(*storage_);
     lists->reading.wait();
-    made->storage_->in_use().load(*lists, lists->offsets, lists->totals);
+    made->storage_->in_use().load(*lists, *lists->offsets, lists->totals);
     return made;
 }
 
@@ -112,7 +112,7 @@ std::uint64_t ListsCore::remove_if(const std::string& expression, const Values& 
     const ExpressionProgram program = key_program(key);
     return shorten([&](const PackedLists& copy, const cl::Buffer& lengths) {
         Arguments arguments;
-        storage_->in_use().add_contiguous_to(arguments, *copy.records, copy.offsets);
+        storage_->in_use().add_contiguous_to(arguments, *copy.records, *copy.offsets);
         arguments.add(lengths);
         arguments.append(program.values);
         kernels_

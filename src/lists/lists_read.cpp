@@ -151,8 +151,14 @@ void ListsCore::gather(std::uint64_t begin, std::uint64_t end, const cl::Buffer&
 /// Enqueues a copy of all lists. A build that may still drop records is not pending.
 std::unique_ptr<PackedLists> ListsCore::packed() const {
     auto lists = std::make_unique<PackedLists>();
-    lists->offsets =
-        Memory(device_.state(), shape_.cells() + 1, sizeof(cl_uint), "offsets of a copy");
+    // Some drivers take longer to make and release memory than to write it.
+    const bool keeps = !storage_->in_use().pool().has_budget();
+    lists->offsets = copied_offsets_;
+    if (!lists->offsets)
+        lists->offsets = std::make_shared<Memory>(keeps ? device_ : MemoryOwner(device_.state()),
+                                                  shape_.cells() + 1, sizeof(cl_uint),
+                                                  "offsets of a copy");
+    if (keeps) copied_offsets_ = lists->offsets;
     const std::uint64_t records = most_records();
     const std::size_t record_bytes = kernels_->record().size;
     lists->records = storage_->in_use().spare_memory(records * record_bytes);
@@ -161,12 +167,12 @@ std::unique_ptr<PackedLists> ListsCore::packed() const {
                                                   "copy of all records");
     std::unique_ptr<CellScan> once;
     CellScan& lengths = scan(once);
-    enqueue_offsets(lengths, lists->offsets.cl());
+    enqueue_offsets(lengths, lists->offsets->cl());
     lists->reading.add(lengths.read_later(lists->totals));
     if (mode() == CELLIST_CONTIGUOUS)
         storage_->in_use().copy_nodes(records, *lists->records);
     else
-        gather(0, shape_.cells(), lists->offsets.cl(), lists->records->cl(),
+        gather(0, shape_.cells(), lists->offsets->cl(), lists->records->cl(),
                record_declaration(*kernels_), "");
     return lists;
 }

@@ -127,7 +127,7 @@ void ListStorage::update(BuildReport& report, std::uint64_t demand, std::uint64_
 void ListStorage::insert(const PackedLists& copy) {
     Arguments arguments;
     add_to(arguments, Inserts::accepted);
-    add_contiguous_to(arguments, *copy.records, copy.offsets);
+    add_contiguous_to(arguments, *copy.records, *copy.offsets);
     kernels_
         .get({{"append.cl", kernels::append_cl}}, "cellist_insert_lists",
              mode() | CELLIST_CONTIGUOUS)
@@ -140,7 +140,7 @@ void ListStorage::load(const PackedLists& packed, const Memory& offsets,
     clear();
     Arguments arguments;
     add_to(arguments);
-    add_contiguous_to(arguments, *packed.records, packed.offsets);
+    add_contiguous_to(arguments, *packed.records, *packed.offsets);
     arguments.add(offsets.cl());
     kernels_.get({{"load.cl", kernels::load_cl}}, "cellist_load", mode() | CELLIST_CONTIGUOUS)
         .enqueue(Range::padded(std::max(shape_.cells(), pool_.counter_elements())), arguments);

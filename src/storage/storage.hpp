@@ -31,7 +31,7 @@ enum class Inserts { refused, accepted };
 
 /// A copy of all lists, contiguous and in order.
 struct PackedLists {
-    Memory offsets;  ///< cells + 1
+    std::shared_ptr<const Memory> offsets;  ///< cells + 1
     std::shared_ptr<const Memory> records;
     CellScan::Totals totals;  ///< of the lengths, after the wait for `reading`
     ReadbackFence reading;

@@ -96,7 +96,7 @@ void CountedStorage::begin_pass() {
 
 /// Makes the lists of a copy the first inserts, and in the filling pass the begin of the lists.
 void CountedStorage::insert(const PackedLists& copy) {
-    count_lists(copy, copy.offsets);
+    count_lists(copy, *copy.offsets);
     if (counted_) move_lists(copy);
 }
 
@@ -125,7 +125,7 @@ void CountedStorage::count_lists(const PackedLists& copy, const Memory& offsets)
 void CountedStorage::move_lists(const PackedLists& copy) {
     Arguments arguments;
     add_to(arguments, Inserts::refused);
-    add_contiguous_to(arguments, *copy.records, copy.offsets);
+    add_contiguous_to(arguments, *copy.records, *copy.offsets);
     const std::uint64_t most = copy.records->size_bytes() / record().size;
     const bool is_alone = pool_.owner()->info.one_thread_per_work_group;
     kernels_.get({{"append.cl", kernels::append_cl}}, "cellist_move_lists", mode())

@@ -202,6 +202,7 @@ private:
     std::unique_ptr<RecordKernels> kernels_;
     std::unique_ptr<ContainerStorage> storage_;
     mutable std::unique_ptr<CellScan> scan_;
+    mutable std::shared_ptr<const Memory> copied_offsets_;  ///< of packed(), for the next time
     std::unique_ptr<ListSorter> sorter_;
     mutable std::unique_ptr<Append> append_;  ///< that a build or a failure has not ended
 };
