@@ -12,10 +12,14 @@ kernel void cellist_insert_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
     cellist_for_each(from, cell, node) cellist_insert(lists, cell, cellist_get(from, node));
 }
 
-// Makes the lengths of contiguous lists the counts of counted lists.
+// Makes the lengths of contiguous lists the counts of counted lists, and clears the counters.
+//
+// At least one work-item per cell and per counter.
 kernel void cellist_count_lists(CELLIST_LISTS(CELLIST_RECORD, lists),
                                 CELLIST_LISTS(CELLIST_RECORD, from)) {
     const uint cell = get_global_id(0);
+    const cellist_shard none = {0};
+    if (cell <= 1u << cellist_view_of(lists).shard_bits) lists_shards[cell] = none;
     if (cell >= cellist_cells(from)) return;
     *cellist_cell_count(lists_heads, cellist_view_of(lists), cell) = cellist_length(from, cell);
 }

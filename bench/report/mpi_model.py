@@ -69,7 +69,7 @@ def cost(records, ranks, foreign=None):
         "lists_bytes": (records + ghosts) * RECORD_BYTES + records / OCCUPANCY * 4,
         "exchange_bytes": COPIES * max(sent, ghosts) * SENT_BYTES,
         "build_s": records * BUILD, "exchange_s": _transfer(sent, messages),
-        # Contiguous lists are built anew with their ghost cells.
+        # Contiguous lists move for their ghost cells: at most the time of a build.
         "ghosts_s": 0 if is_random else records * BUILD + _transfer(ghosts, ghost_messages),
     }
 

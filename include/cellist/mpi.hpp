@@ -196,7 +196,7 @@ public:
     ///
     /// The next build or exchange removes the copies. The order of the lists is undefined
     /// afterwards, so sort after the exchange. The first exchange after a build takes the time of
-    /// an append: see cellist::Lists::append(). A later one also builds the rank's own lists anew.
+    /// an append: see cellist::Lists::append(). A later one first removes the ghost cells.
     BuildReport exchange_ghosts() { return core_->exchange_ghosts(); }
 
     /// Empties the lists. Collective.

@@ -74,6 +74,9 @@ void ListsCore::restore(bool without_pool) const {
         storage.return_to_mark();
     } else if (append->copy) {
         append->copy->reading.wait();
+        // Storage::automatic may have left contiguous lists for slots.
+        if (storage.mode() == CELLIST_FIXED && append->copy->totals.longest == 0)
+            count_lengths(*append->copy);
         storage.load(*append->copy, *append->copy->offsets, append->copy->totals);
     }
 }

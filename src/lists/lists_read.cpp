@@ -165,16 +165,33 @@ std::unique_ptr<PackedLists> ListsCore::packed() const {
     if (!lists->records)
         lists->records = std::make_shared<Memory>(device_.state(), records, record_bytes,
                                                   "copy of all records");
+    if (mode() == CELLIST_CONTIGUOUS) {
+        storage_->in_use().copy_contiguous(*lists);
+        lists->totals.sum = records;
+        return lists;
+    }
     std::unique_ptr<CellScan> once;
     CellScan& lengths = scan(once);
     enqueue_offsets(lengths, lists->offsets->cl());
     lists->reading.add(lengths.read_later(lists->totals));
-    if (mode() == CELLIST_CONTIGUOUS)
-        storage_->in_use().copy_nodes(records, *lists->records);
-    else
-        gather(0, shape_.cells(), lists->offsets->cl(), lists->records->cl(),
-               record_declaration(*kernels_), "");
+    gather(0, shape_.cells(), lists->offsets->cl(), lists->records->cl(),
+           record_declaration(*kernels_), "");
     return lists;
+}
+
+/// Makes the totals of a copy complete.
+void ListsCore::count_lengths(PackedLists& copy) const {
+    const Memory words(device_.state(), shape_.cells(), sizeof(cl_uint), "length buffer");
+    Arguments arguments;
+    storage_->in_use().add_contiguous_to(arguments, *copy.records, *copy.offsets);
+    arguments.add(words.cl());
+    lengths_kernel(*kernels_, "cellist_lengths", CELLIST_CONTIGUOUS)
+        .enqueue(cell_range(), arguments);
+    std::unique_ptr<CellScan> once;
+    CellScan& lengths = scan(once);
+    lengths.sum(words.cl(), CELLIST_NONE);
+    copy.reading.add(lengths.read_later(copy.totals));
+    copy.reading.wait();
 }
 
 void ListsCore::download(ReadbackFence& done, std::vector<cl_uint>& offsets,

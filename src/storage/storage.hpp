@@ -33,7 +33,9 @@ enum class Inserts { refused, accepted };
 struct PackedLists {
     std::shared_ptr<const Memory> offsets;  ///< cells + 1
     std::shared_ptr<const Memory> records;
-    CellScan::Totals totals;  ///< of the lengths, after the wait for `reading`
+    /// Of the lengths, after the wait for `reading`. Only slots need more than the sum: the others
+    /// are 0 for a copy of contiguous lists.
+    CellScan::Totals totals;
     ReadbackFence reading;
 };
 
@@ -133,9 +135,10 @@ public:
     void add_contiguous_to(Arguments& arguments, const Memory& records,
                            const Memory& offsets) const;
 
-    /// Enqueues a copy of the first `count` nodes.
-    void copy_nodes(std::uint64_t count, const Memory& to) const {
-        copy(pool_.nodes(), to, count * pool_.node_bytes());
+    /// Enqueues a copy of lists whose mode is CELLIST_CONTIGUOUS.
+    void copy_contiguous(const PackedLists& to) const {
+        copy(pool_.heads(), *to.offsets, to.offsets->size_bytes());
+        copy(pool_.nodes(), *to.records, stored() * pool_.node_bytes());
     }
 
     [[nodiscard]] const NodePool& pool() const { return pool_; }

@@ -82,16 +82,18 @@ void CountedStorage::begin_pass() {
         else
             pool_.clear(partitions_->heads(), 0, 0, partitions_->plan().words_to_clear());
         view_.mode = CELLIST_PARTITIONED;
-    } else if (!counted_) {
-        if (kept_.records > 0)
-            clear_words(0, 0, 0);
-        else
-            clear();
+        return;
+    }
+    if (!counted_) {
         view_.mode = CELLIST_COUNTING;
         has_counted_ = true;
-    } else {
-        clear_words(0, counts_at(), kept_.records > 0 ? 0 : shape_.cells());
     }
+    // insert() follows, and sets the counts and the counters.
+    if (kept_.records > 0) return;
+    if (counted_)
+        clear_words(0, counts_at(), shape_.cells());
+    else
+        clear();
 }
 
 /// Makes the lists of a copy the first inserts, and in the filling pass the begin of the lists.
@@ -103,14 +105,13 @@ void CountedStorage::insert(const PackedLists& copy) {
 void CountedStorage::load(const PackedLists& packed, const Memory& offsets,
                           const CellScan::Totals& totals) {
     reserve(totals.sum, totals.longest);
-    clear_words(0, 0, 0);
     copy(offsets, pool_.heads(), offsets.size_bytes());
     count_lists(packed, offsets);
     move_lists(packed);
     expected_ = std::make_shared<Expected>(Expected{totals.sum, totals.hash});
 }
 
-/// Enqueues counts that are the lengths of lists with these offsets.
+/// Enqueues counts that are the lengths of lists with these offsets, and clears the counters.
 void CountedStorage::count_lists(const PackedLists& copy, const Memory& offsets) {
     Arguments arguments;
     add_to(arguments, Inserts::refused);
@@ -118,7 +119,7 @@ void CountedStorage::count_lists(const PackedLists& copy, const Memory& offsets)
     kernels_
         .get({{"append.cl", kernels::append_cl}}, "cellist_count_lists",
              mode() | CELLIST_CONTIGUOUS)
-        .enqueue(Range::padded(shape_.cells()), arguments);
+        .enqueue(Range::padded(std::max(shape_.cells(), pool_.counter_elements())), arguments);
 }
 
 /// Enqueues a copy of the lists of a copy to the begin of the lists, as far as these go.

@@ -181,6 +181,7 @@ private:
     void enqueue_lengths(const cl::Buffer& lengths) const;
     void enqueue_offsets(CellScan& scan, const cl::Buffer& offsets) const;
     [[nodiscard]] std::unique_ptr<PackedLists> packed() const;
+    void count_lengths(PackedLists& copy) const;
     void restore(bool without_pool) const;
     void gather(std::uint64_t begin, std::uint64_t end, const cl::Buffer& offsets,
                 const cl::Buffer& values, const std::string& declaration,
