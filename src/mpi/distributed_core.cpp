@@ -148,6 +148,7 @@ struct DistributedCore::Impl {
     }
 
     void copy_ghosts() {
+        if (plan->ghost_copies().empty()) return outbox.clear_send_lists();
         outbox.fill_send_lists([&](ListsCore& send) {
             for (const GhostCopy& copy : plan->ghost_copies()) {
                 Arguments arguments;
@@ -284,12 +285,19 @@ BuildReport DistributedCore::exchange_ghosts() {
             own.copy_ghosts();
         });
         own.send();
+        own.has_ghosts = true;
+        if (own.outbox.received() == 0) {
+            const std::uint64_t stored = own.lists.storage().in_use().stored();
+            report = {.stored = stored,
+                      .capacity_nodes = own.lists.capacity_nodes(),
+                      .existing = stored};
+            return;
+        }
         report = own.lists.append([&] {
             Arguments arguments;
             own.lists.add_to(arguments);
             own.outbox.insert_received(std::move(arguments));
         });
-        own.has_ghosts = true;
     });
     return own.sum(report);
 }

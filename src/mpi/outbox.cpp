@@ -112,10 +112,7 @@ void Outbox::fill(const std::function<void(cl_uint)>& run, cl_uint inserts) {
         // The rank's own records are already in its lists.
         inserts = CELLIST_INSERT_FOREIGN;
     }
-    if (sum.allocated == 0) {
-        std::fill(send_offsets_.begin(), send_offsets_.end(), 0);
-        return;
-    }
+    if (sum.allocated == 0) return clear_send_lists();
     reserve_send_lists(sum.allocated);
     fill_send_lists([&](ListsCore& send) {
         const cellist_view outbox = view();
@@ -150,6 +147,10 @@ void Outbox::fill_send_lists(const std::function<void(ListsCore&)>& insert) {
         if (report.dropped == 0) return;
         reserve_send_lists(report.attempted);
     }
+}
+
+void Outbox::clear_send_lists() {
+    std::fill(send_offsets_.begin(), send_offsets_.end(), 0);
 }
 
 void Outbox::send() {

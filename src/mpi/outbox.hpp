@@ -50,11 +50,14 @@ public:
     /// Fills the send lists, which have one cell for each rank: `insert` inserts into them. It runs
     /// again while they are too small. Blocks.
     void fill_send_lists(const std::function<void(ListsCore&)>& insert);
+    void clear_send_lists();
     /// Sends the send lists. Collective. Blocks.
     void send();
     /// Enqueues a kernel that inserts the records that have arrived into the container of the
     /// arguments. Their cells are cells of that container.
     void insert_received(Arguments arguments);
+    /// The number of records that have arrived.
+    [[nodiscard]] std::uint64_t received() const { return received_; }
     /// Forgets the records that have arrived.
     void clear_received() { received_ = 0; }
 
