@@ -155,16 +155,16 @@ std::unique_ptr<PackedLists> ListsCore::packed() const {
     const bool keeps = !storage_->in_use().pool().has_budget();
     lists->offsets = copied_offsets_;
     if (!lists->offsets)
-        lists->offsets = std::make_shared<Memory>(keeps ? device_ : MemoryOwner(device_.state()),
-                                                  shape_.cells() + 1, sizeof(cl_uint),
-                                                  "offsets of a copy");
+        lists->offsets =
+            std::make_shared<Memory>(keeps ? device_ : MemoryOwner(device_.state()),
+                                     shape_.cells() + 1, sizeof(cl_uint), "offsets of a copy");
     if (keeps) copied_offsets_ = lists->offsets;
     const std::uint64_t records = most_records();
     const std::size_t record_bytes = kernels_->record().size;
     lists->records = storage_->in_use().spare_memory(records * record_bytes);
     if (!lists->records)
-        lists->records = std::make_shared<Memory>(device_.state(), records, record_bytes,
-                                                  "copy of all records");
+        lists->records =
+            std::make_shared<Memory>(device_.state(), records, record_bytes, "copy of all records");
     if (mode() == CELLIST_CONTIGUOUS) {
         storage_->in_use().copy_contiguous(*lists);
         lists->totals.sum = records;

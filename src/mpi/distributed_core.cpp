@@ -288,9 +288,8 @@ BuildReport DistributedCore::exchange_ghosts() {
         own.has_ghosts = true;
         if (own.outbox.received() == 0) {
             const std::uint64_t stored = own.lists.storage().in_use().stored();
-            report = {.stored = stored,
-                      .capacity_nodes = own.lists.capacity_nodes(),
-                      .existing = stored};
+            report = {
+                .stored = stored, .capacity_nodes = own.lists.capacity_nodes(), .existing = stored};
             return;
         }
         report = own.lists.append([&] {

@@ -66,8 +66,7 @@ Outbox::Outbox(const MemoryOwner& device, ExchangeKernels& kernels, const Partit
              .is_linked = true}),
       distribution_(plan.distribution()),
       send_(std::make_shared<ListsCore>(device, kernels.sent_definitions(),
-                                        Shape{communicator_.size()},
-                                        send_options(device->info))),
+                                        Shape{communicator_.size()}, send_options(device->info))),
       send_offsets_(static_cast<std::size_t>(communicator_.size()) + 1, 0),
       cuts_(device, plan.cuts().size(), sizeof plan.cuts()[0], "cuts"),
       exchange_(communicator_, device) {
@@ -149,9 +148,7 @@ void Outbox::fill_send_lists(const std::function<void(ListsCore&)>& insert) {
     }
 }
 
-void Outbox::clear_send_lists() {
-    std::fill(send_offsets_.begin(), send_offsets_.end(), 0);
-}
+void Outbox::clear_send_lists() { std::fill(send_offsets_.begin(), send_offsets_.end(), 0); }
 
 void Outbox::send() {
     received_ = exchange_.run(send_pool().nodes(), send_offsets_, send_pool().node_bytes());

@@ -86,9 +86,8 @@ void ListStorage::allocate_saved(const Memory& memory) {
 
 void ListStorage::copy(const Memory& from, const Memory& to, std::uint64_t bytes) const {
     if (bytes == 0) return;
-    opencl([&] {
-        pool_.owner()->ordered_queue().enqueueCopyBuffer(from.cl(), to.cl(), 0, 0, bytes);
-    });
+    opencl(
+        [&] { pool_.owner()->ordered_queue().enqueueCopyBuffer(from.cl(), to.cl(), 0, 0, bytes); });
 }
 
 Counters::Sum ListStorage::wait_for_counters() {

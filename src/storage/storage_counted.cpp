@@ -130,9 +130,9 @@ void CountedStorage::move_lists(const PackedLists& copy) {
     const std::uint64_t most = copy.records->size_bytes() / record().size;
     const bool is_alone = pool_.owner()->info.one_thread_per_work_group;
     kernels_.get({{"append.cl", kernels::append_cl}}, "cellist_move_lists", mode())
-        .enqueue(Range::padded((most / CELLIST_MOVE_TILE + 1) *
-                               (is_alone ? 1 : CELLIST_MOVE_LANES)),
-                 arguments);
+        .enqueue(
+            Range::padded((most / CELLIST_MOVE_TILE + 1) * (is_alone ? 1 : CELLIST_MOVE_LANES)),
+            arguments);
 }
 
 /// The partitions, which only builds use.
