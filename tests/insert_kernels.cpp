@@ -84,6 +84,15 @@ kernel void copy(CELLIST_LISTS(Item, from), CELLIST_LISTS(Item, to))
     const uint cell = get_global_id(0);
     cellist_for_each(from, cell, node) cellist_insert(to, cell, cellist_get(from, node));
 }
+
+// The number of records of each cell, and the sum of their ids.
+kernel void sums(CELLIST_LISTS(Item, lists), global uint2* sums)
+{
+    const uint cell = get_global_id(0);
+    uint2 sum = (uint2)(0u, 0u);
+    cellist_for_each(lists, cell, node) sum += (uint2)(1u, cellist_get(lists, node).id);
+    sums[cell] = sum;
+}
 )";
 
 TEST_CASE("a work-item inserts any number of records, in divergent loops") {
@@ -189,6 +198,34 @@ TEST_CASE("one kernel inserts into containers of different types") {
                 REQUIRE(spark.rgb[1] == 2);
                 REQUIRE(spark.rgb[2] == spark.id % 256);
             }
+}
+
+TEST_CASE("kernels of a build read what earlier kernels have inserted") {
+    const Storage storage = GENERATE(Storage::linked, Storage::fixed);
+    INFO(name_of(storage));
+    CELLIST_RANDOM(random, 14u);
+    Lists<Item> lists(device(), {40}, {.storage = storage, .capacity_nodes = 100});
+    const Lists<Spark> sparks(device(), {1});
+    Kernel kernel(device(), two_containers, "sums", lists, sparks);
+    Buffer<cl_uint2> sums(device(), 40);
+    const Inserts<Item> inserts = random_inserts(4096, 40, random);
+    Inserter inserter(lists);
+    require_complete(lists.build([&] {
+        inserter.run(lists, inserts);
+        kernel.run(40, lists, sums);
+    }),
+                     4096);
+    std::vector<cl_uint2> expected(40);
+    for (const auto& [cell, item] : oracle_of(inserts, 40)) {
+        ++expected[cell].s[0];
+        expected[cell].s[1] += item.id;
+    }
+    const std::vector<cl_uint2> found = sums.download();
+    for (std::size_t cell = 0; cell < 40; ++cell) {
+        CHECK(found[cell].s[0] == expected[cell].s[0]);
+        CHECK(found[cell].s[1] == expected[cell].s[1]);
+    }
+    require_same(lists.download(), oracle_of(inserts, 40));
 }
 
 TEST_CASE("a kernel reads one container and inserts into another of the same type") {

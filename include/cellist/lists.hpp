@@ -115,7 +115,9 @@ public:
 
     /// Builds the lists with several kernels. `insert` enqueues them all with Kernel::run. The
     /// build calls it once for each run of the kernels. `insert` cannot build, clear, sort or read
-    /// these lists: each of these throws Error. Throws what `insert` throws.
+    /// these lists: each of these throws Error. Its kernels may, in Storage::linked and
+    /// Storage::fixed, read the records that earlier kernels of the same run have inserted. Throws
+    /// what `insert` throws.
     BuildReport build(std::invocable auto&& insert) { return core_->build(std::ref(insert)); }
 
     /// Starts the same build. The event completes after the first pass. get() runs more passes if

@@ -82,6 +82,10 @@ public:
     /// options. True if the lists are complete. Throws OverflowError; the caller empties the lists
     /// then. Blocks.
     virtual bool review(BuildReport& report) = 0;
+    /// The event of the last command of end_pass(), if that is a read; null otherwise.
+    [[nodiscard]] cl::Event last_read() const {
+        return kept_.records == 0 ? reading_.event() : cl::Event();
+    }
     /// Records that found no node in the last pass. Blocks.
     [[nodiscard]] std::uint64_t dropped() { return wait_for_counters().dropped; }
     [[nodiscard]] const Kept& kept() const { return kept_; }
