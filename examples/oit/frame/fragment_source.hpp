@@ -49,6 +49,12 @@ public:
         if (opaque_ && opaque_->passes) draw_opaque();
     }
 
+    /// For a note that kernels leave: see raster::Triangles::note().
+    [[nodiscard]] const cellist::Buffer<raster::RasterCounts>& counts() const {
+        return transparent_.counts();
+    }
+    [[nodiscard]] cl_uint note() const { return transparent_.note(); }
+
     /// Starts the reads that finish_or_grow() waits for: best when a frame is enqueued.
     void read_counts() {
         transparent_.read_counts();

@@ -18,9 +18,9 @@ static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitLocatio
 //
 // The lists are sorted by key. With OIT_NEAREST=K they need not be, and the K nearest fragments of
 // each are blended; OIT_LAYERS=K stops after the first K of a sorted list. With OIT_SORTED=N they
-// need not be sorted either, and *longer becomes 1 where one has N fragments or more.
+// need not be sorted either. If one has N fragments or more, the kernel leaves the note `longer`.
 #ifdef OIT_SORTED
-#define OIT_LONGER , global uint* longer
+#define OIT_LONGER , global RasterCounts *bin_counts, const uint longer
 
 // Fragments of a list by key and node, up to OIT_SORTED of them. Their nodes stay in place.
 typedef struct {
@@ -182,7 +182,7 @@ kernel void oit_resolve_lists(CELLIST_LISTS(OIT_NODE, fragments) OIT_LONGER, OIT
 #ifdef OIT_SORTED
     OitEntries entries;
     oit_blend_list(CELLIST_PASS(fragments), cell, &entries, &pixel, &blended);
-    if (entries.found == OIT_SORTED) *longer = 1;
+    if (entries.found == OIT_SORTED) bin_counts->note = longer;
 #elif defined(OIT_NEAREST)
     struct OIT_NODE nearest[OIT_NEAREST];
     const uint found = cellist_nearest(fragments, cell, key, OIT_NEAREST, nearest);

@@ -65,8 +65,7 @@ public:
           may_sort_in_reader_(may_sort_in_reader),
           may_fix_capacity_(keeps_all()),
           fragments_(lists_with(options)),
-          pass_(source.pass(kernels::lists_cl, "lists.cl", fragments_)),
-          longer_(source.device(), 1) {
+          pass_(source.pass(kernels::lists_cl, "lists.cl", fragments_)) {
         if (reader)
             reader_.emplace(kernel_of(*reader));
         else
@@ -84,10 +83,23 @@ public:
             fragments_.build(draw);
     }
 
+    // The build reads its counters at its end: a read between kernels makes the device wait. So
+    // what reads the lists is part of the build, unless a list is complete only after it.
+    void draw(const std::function<void()>& stored) override {
+        if (pool_ == Pool::measured) fix_capacity();
+        if (pool_ != Pool::bounded || !unsorted_reader_ ||
+            fragments_.storage() == cellist::Storage::counted)
+            return Method::draw(stored);
+        built_ = fragments_.build_async([this, stored] {
+            source_.draw(pass_, fragments_);
+            stored();
+            source_.run_on_screen(*unsorted_reader_, fragments_, source_.counts(), longer_);
+        });
+    }
+
     void resolve() override {
         if (pool_ == Pool::bounded && unsorted_reader_) {
-            source_.run_on_screen(*unsorted_reader_, fragments_, longer_);
-            longer_read_ = longer_.download_async();
+            source_.run_on_screen(*unsorted_reader_, fragments_, source_.counts(), longer_);
             return;
         }
         if (sorts_) fragments_.sort(&Node::key);
@@ -135,7 +147,7 @@ private:
             return true;
         }
         const bool fitted = built_.get().dropped == 0;
-        if (fitted && !(unsorted_reader_ && longer_read_.get().front() != 0)) return true;
+        if (fitted && !(unsorted_reader_ && source_.note() == longer_)) return true;
         fragments_ = lists_with(options_);
         pool_ = Pool::growing;
         return false;
@@ -170,7 +182,7 @@ private:
                 sorting_defines(source_.device().info(), source_.layout(), longest))));
         else
             unsorted_reader_.reset();
-        longer_.fill(0);
+        ++longer_;
         pool_ = Pool::bounded;
     }
 
@@ -193,10 +205,9 @@ private:
     std::optional<LensGather> lens_;
     std::optional<cellist::Kernel> unsorted_reader_;  // of short lists in a fixed pool
     Pool pool_ = Pool::growing;
-    cellist::Lengths lengths_ = {};    // of the last frame, if the pool is measured
-    cellist::Buffer<cl_uint> longer_;  // not 0 if unsorted_reader_ met a list that is too long
+    cellist::Lengths lengths_ = {};  // of the last frame, if the pool is measured
+    cl_uint longer_ = 0;  // the note that unsorted_reader_ leaves if a list is too long for it
     cellist::Pending<cellist::BuildReport> built_;
-    cellist::Pending<std::vector<cl_uint>> longer_read_;
 };
 
 std::unique_ptr<Method> make_unsliced(FragmentSource& source, const cellist::ListsOptions& options,

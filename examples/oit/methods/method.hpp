@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -33,6 +34,13 @@ public:
 
     /// Makes the image, with kernels of the source over the pixels. Does not block.
     virtual void resolve() = 0;
+
+    /// Stores fragments, calls a function, and makes the image. May block in store().
+    virtual void draw(const std::function<void()>& stored) {
+        store();
+        stored();
+        resolve();
+    }
 
     /// Waits for the image. False if fragments had no room: the method makes room, and the frame
     /// begins again at store().

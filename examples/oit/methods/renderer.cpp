@@ -53,18 +53,17 @@ void Renderer::start(const AfterPass& after_pass) {
 
     if (reduction_) reduction_->draw_opaque(source_);
     source_.prepare();
-    method_->store();
-    check_memory(*method_, source_.frame().memory_bytes);
-    after_pass(&PassTimes::raster_insert_ms);
-
-    method_->resolve();
+    method_->draw([&] {
+        check_memory(*method_, source_.frame().memory_bytes);
+        after_pass(&PassTimes::raster_insert_ms);
+    });
     source_.average_samples();
     if (reduction_) reduction_->enlarge(source_);
     if (lens_) lens_->cut_out(source_);
     after_pass(&PassTimes::sort_blend_ms);
 
+    // The last command: the image is there when the counts are.
     source_.read_counts();
-    drawn_ = device_.enqueue_marker();
     device_.queue().flush();
 }
 
@@ -89,7 +88,6 @@ double Renderer::draw() {
 
 void Renderer::finish() {
     while (!finish_or_grow()) start();
-    drawn_.wait();
 }
 
 double Renderer::draw_changed() {

@@ -89,7 +89,6 @@ private:
     std::unique_ptr<Reduction> reduction_;  ///< where Quality::reduce asks for it
     FragmentSource source_;
     std::unique_ptr<Method> method_;
-    cl::Event drawn_;
 };
 
 }  // namespace oit

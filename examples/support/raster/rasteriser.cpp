@@ -17,21 +17,20 @@ namespace {
 constexpr std::size_t batch_size = 64;         // RASTER_BATCH in triangle.clh
 constexpr std::size_t first_capacity = 16384;  // of the queues
 
+bool is_gpu(const cellist::Device& device) { return device.info().type == CL_DEVICE_TYPE_GPU; }
+
 // What suits a device. On GPUs, a work-item tests the pixels of a cell, and the work-items of a
 // group share out those that are covered. On CPUs, a work-item is a loop of a thread, and scans a
 // whole block.
 struct Tuning {
     int block_pixels;
-    std::size_t lanes;   // of a block
-    std::size_t teams;   // of lanes, in a work-group
-    std::size_t groups;  // for each compute unit
+    std::size_t lanes;  // of a block
+    std::size_t items;  // that scan blocks, for each compute unit
 };
 
-bool is_gpu(const cellist::Device& device) { return device.info().type == CL_DEVICE_TYPE_GPU; }
-
 Tuning tuning_for(const cellist::Device& device) {
-    if (is_gpu(device)) return {8, 4, 8, 32};
-    return {32, 1, 1, 64};
+    if (is_gpu(device)) return {8, 4, 1024};
+    return {32, 1, 64};
 }
 
 cl_uint checked_count(std::uint64_t count, const char* what) {
@@ -85,18 +84,19 @@ std::string joined(std::initializer_list<std::string_view> parts) {
 std::string defines(const cellist::Device& device, const Sampling& sampling) {
     const Tuning tuning = tuning_for(device);
     return "#define RASTER_BLOCK_PIXELS " + std::to_string(tuning.block_pixels) +
-           "\n#define RASTER_LANES " + std::to_string(tuning.lanes) + "\n#define RASTER_TEAMS " +
-           std::to_string(tuning.teams) + "\n#define RASTER_SAMPLES " +
+           "\n#define RASTER_LANES " + std::to_string(tuning.lanes) + "\n#define RASTER_SAMPLES " +
            std::to_string(sampling.samples) + "\n" +
+           (is_gpu(device) ? "#define RASTER_PROJECTS\n" : "") +
            (sampling.depth_range ? "#define RASTER_DEPTH_RANGE\n" : "") +
            (sampling.exact ? "#define RASTER_EXACT\n" : "");
 }
 
 cellist::Source setup_source(const cellist::Device& device, const Sampling& sampling) {
-    return {.text = joined({defines(device, sampling), kernels::definitions_h,
-                            kernels::triangle_clh, kernels::clip_clh, kernels::setup_cl}),
-            .file_name = "raster_setup.cl",
-            .options = build_options(device)};
+    return {
+        .text = joined({defines(device, sampling), kernels::definitions_h, kernels::projection_clh,
+                        kernels::triangle_clh, kernels::clip_clh, kernels::setup_cl}),
+        .file_name = "raster_setup.cl",
+        .options = build_options(device)};
 }
 
 // A row of a view times the place of the mesh. Rounded once.
@@ -107,8 +107,8 @@ void set_row(cl_float (&out)[4], const cl_float (&row)[4], const glm::dmat4& to_
 }
 
 void append_batches(std::vector<RasterBatch>& batches, std::size_t instance, cl_uint first,
-                    cl_uint count) {
-    constexpr auto size = static_cast<cl_uint>(batch_size);
+                    cl_uint count, std::size_t most) {
+    const auto size = static_cast<cl_uint>(most);
     for (cl_uint begin = 0; begin < count; begin += std::min(size, count - begin))
         batches.push_back({static_cast<cl_uint>(instance), first + begin,
                            first + begin + std::min(size, count - begin)});
@@ -136,37 +136,41 @@ cellist::Range batches_range(std::size_t batches) {
     return cellist::Range::padded(batches * batch_size, batch_size);
 }
 
-// Whether a group for each batch leaves some of a GPU idle.
-bool few_for_gpu(const cellist::Device& device, std::size_t batches) {
-    return is_gpu(device) && batches < 8 * std::size_t{device.info().compute_units};
+}  // namespace
+
+// How triangles go to work-groups, a batch to each.
+struct Batching {
+    std::size_t triangles;  // of a batch, at most
+    std::size_t items;      // of a group
+    cl_int small_pixels;    // the size of triangles that the group draws
+};
+
+namespace {
+
+// A GPU is busy with 8 large batches for each compute unit. With fewer, batches are small and
+// groups large.
+Batching batching_for(const cellist::Device& device, std::size_t triangles) {
+    if (!is_gpu(device)) return {batch_size, batch_size, 32};
+    const std::size_t units = device.info().compute_units;
+    if (triangles >= 8 * units * batch_size) return {batch_size, batch_size, 16};
+    const std::size_t groups = 6 * units;
+    return {std::clamp<std::size_t>((triangles + groups - 1) / groups, 1, batch_size),
+            4 * batch_size, 32};
 }
 
-// Larger triangles are divided into blocks. With few batches, all groups of a GPU share these.
-cl_int small_pixels_for(const cellist::Device& device, std::size_t batches) {
-    if (!is_gpu(device)) return 32;
-    return few_for_gpu(device, batches) ? 4 : 16;
-}
-
-// A group for each batch, of more work-items if there are few.
-cellist::Range batch_groups(const cellist::Device& device, std::size_t batches) {
-    const std::size_t items = few_for_gpu(device, batches) ? 4 * batch_size : batch_size;
-    return cellist::Range::padded(batches * items, items);
-}
-
-// The words of raster_draw_small for pixels that wait: see draw.clh.
-std::optional<cellist::LocalMemory> waiting_pixels(const cellist::Device& device,
-                                                   std::size_t items) {
-    if (!is_gpu(device)) return {};
+// The words of raster_draw for pixels that wait: see draw.clh.
+cellist::LocalMemory waiting_pixels(std::size_t items) {
     constexpr std::size_t cell_area = 16;
     return cellist::LocalMemory{items * (cell_area + 1) * sizeof(cl_uint)};
 }
 
-cellist::Range block_range(const cellist::Device& device) {
-    const Tuning tuning = tuning_for(device);
-    const std::size_t items = tuning.teams * tuning.lanes;
-    cellist::Range range(device.info().compute_units * tuning.groups * items);
-    range.local = {items, 1, 1};
-    return range;
+// Of the work-items that scan blocks. On GPUs, their groups come after those of the batches.
+cellist::Range block_range(const cellist::Device& device, const cellist::Range& batches) {
+    const std::size_t items = device.info().compute_units * tuning_for(device).items;
+    if (!is_gpu(device)) return cellist::Range::padded(items, 1);
+    cellist::Range all = cellist::Range::padded(items, batches.local[0]);
+    all.global[0] += batches.global[0];
+    return all;
 }
 
 }  // namespace
@@ -207,21 +211,23 @@ std::string build_options(const cellist::Device& device) {
 
 std::string triangle_text(const cellist::Device& device, const Sampling& sampling) {
     return joined({defines(device, sampling), "#define RASTER_WIDE", kernels::definitions_h,
-                   kernels::triangle_clh, kernels::clip_clh, kernels::pixel_clh,
-                   kernels::fragment_clh});
+                   kernels::projection_clh, kernels::triangle_clh, kernels::clip_clh,
+                   kernels::pixel_clh, kernels::fragment_clh});
 }
 
 SetupKernels::SetupKernels(const cellist::Device& device, const Sampling& sampling)
     : transform(make_kernel(device, setup_source(device, sampling), "raster_transform")),
       bin(make_kernel(device, setup_source(device, sampling), "raster_bin")) {}
 
+bool Pass::draws_at_once(const cellist::Device& device) { return is_gpu(device); }
+
 cellist::Source Pass::pass_source(const cellist::Device& device, const Sampling& sampling,
                                   std::string_view source, const std::string& name,
                                   EdgeBits edge_bits) {
     return {.text = joined({defines(device, sampling),
                             edge_bits == EdgeBits::wide ? "#define RASTER_WIDE" : "",
-                            kernels::definitions_h, kernels::triangle_clh, kernels::pixel_clh,
-                            kernels::fragment_clh, source, kernels::draw_clh}),
+                            kernels::definitions_h, kernels::projection_clh, kernels::triangle_clh,
+                            kernels::pixel_clh, kernels::fragment_clh, source, kernels::draw_clh}),
             .file_name = name,
             .options = build_options(device)};
 }
@@ -235,7 +241,7 @@ std::vector<RasterBatch> vertex_batches(const Geometry& geometry, std::span<cons
     std::vector<RasterBatch> batches;
     for (std::size_t i = 0; i < eyes * placed.size(); ++i) {
         const Geometry::Part& part = geometry.part(placed[i % placed.size()].mesh);
-        append_batches(batches, i, part.first_vertex, part.vertices);
+        append_batches(batches, i, part.first_vertex, part.vertices, batch_size);
     }
     return batches;
 }
@@ -254,11 +260,12 @@ Projection::Projection(const cellist::Device& device, SetupKernels& kernels,
                        std::span<const View> views)
     : kernels_(kernels),
       geometry_(geometry),
+      projects_once_(!is_gpu(device)),
       eyes_(views.size()),
       views_(device, views),
       instances_(device, views.size() * placed.size()),
       batches_(device, vertex_batches(geometry, placed, views.size())),
-      vertices_(device, projected_vertices(geometry, placed, views.size())),
+      vertices_(device, projects_once_ ? projected_vertices(geometry, placed, views.size()) : 1),
       vertex_range_(batches_range(batches_.size())) {
     for (const Placed& one : placed) meshes_.push_back(one.mesh);
     move(placed, views);
@@ -280,12 +287,20 @@ void Projection::move(std::span<const Placed> placed, std::span<const View> view
 
 // ---- Triangles -------------------------------------------------------------------------------
 
-std::vector<RasterBatch> Projection::triangle_batches(std::span<const std::size_t> chosen) const {
+std::size_t Projection::triangles_of(std::span<const std::size_t> chosen) const {
+    std::size_t triangles = 0;
+    for (const std::size_t i : chosen) triangles += geometry_.part(meshes_.at(i)).triangles;
+    return eyes_ * triangles;
+}
+
+std::vector<RasterBatch> Projection::triangle_batches(std::span<const std::size_t> chosen,
+                                                      std::size_t most) const {
     std::vector<RasterBatch> batches;
     for (std::size_t eye = 0; eye < eyes_; ++eye)
         for (const std::size_t i : chosen) {
             const Geometry::Part& part = geometry_.part(meshes_.at(i));
-            append_batches(batches, eye * meshes_.size() + i, part.first_triangle, part.triangles);
+            append_batches(batches, eye * meshes_.size() + i, part.first_triangle, part.triangles,
+                           most);
         }
     // Pieces of triangles are numbered, 8 for each.
     checked_count(8 * batches.size() * batch_size, "pieces of triangles in its instances");
@@ -306,28 +321,47 @@ std::vector<RasterBatch> part_of(const std::vector<RasterBatch>& batches, const 
 
 Triangles::Triangles(const cellist::Device& device, const Projection& projection,
                      std::span<const std::size_t> chosen, const Share& share)
+    : Triangles(device, projection, chosen, share,
+                batching_for(device, projection.triangles_of(chosen) / share.count)) {}
+
+Triangles::Triangles(const cellist::Device& device, const Projection& projection,
+                     std::span<const std::size_t> chosen, const Share& share,
+                     const Batching& batching)
     : device_(device),
       projection_(projection),
-      batches_(device, in_order_for(device, part_of(projection.triangle_batches(chosen), share))),
-      small_pixels_(small_pixels_for(device, batches_.size())),
-      group_range_(batch_groups(device, batches_.size())),
-      waiting_pixels_(waiting_pixels(device, group_range_.local[0])),
-      block_range_(block_range(device)),
+      batches_(device,
+               in_order_for(device, part_of(projection.triangle_batches(chosen, batching.triangles),
+                                            share))),
+      small_pixels_(batching.small_pixels),
+      group_range_(cellist::Range::padded(batches_.size() * batching.items, batching.items)),
+      block_range_(block_range(device, group_range_)),
+      waiting_pixels_(waiting_pixels(group_range_.local[0])),
       queue_(device, first_capacity),
       blocks_(device, first_capacity),
-      counts_(device, 2) {
-    counts_.fill({0, 0});
+      counts_(device, 1),
+      may_be_without_queue_(is_gpu(device)) {
+    counts_.fill({});
 }
 
 bool Triangles::finish_or_grow() {
-    if (all_fitted_) return *all_fitted_;
-    read_counts();
-    const RasterCounts counts = counted_->get()[turn_];
-    all_fitted_ = counts.triangles <= queue_.size() && counts.blocks <= blocks_.size();
-    if (counts.triangles > queue_.size())
-        queue_ = cellist::Buffer<RasterTriangle>(device_, counts.triangles);
-    if (counts.blocks > blocks_.size())
-        blocks_ = cellist::Buffer<RasterBlock>(device_, counts.blocks);
+    if (!counted_) {
+        if (all_fitted_) return *all_fitted_;
+        read_counts();
+    }
+    const RasterCounts counts = counted_->get().front();
+    counted_.reset();
+    note_ = counts.note;
+    const cl_uint triangles = counts.triangles[turn_], blocks = counts.blocks[turn_];
+    if (without_queue_) {
+        // Nothing is known before triangles are drawn.
+        without_queue_ = may_be_without_queue_ = drawn_ && triangles == 0;
+        all_fitted_ = without_queue_;
+        return *all_fitted_;
+    }
+    without_queue_ = may_be_without_queue_ && drawn_ && triangles == 0;
+    all_fitted_ = triangles <= queue_.size() && blocks <= blocks_.size();
+    if (triangles > queue_.size()) queue_ = cellist::Buffer<RasterTriangle>(device_, triangles);
+    if (blocks > blocks_.size()) blocks_ = cellist::Buffer<RasterBlock>(device_, blocks);
     return *all_fitted_;
 }
 

@@ -103,21 +103,30 @@ public:
     /// `uses` names the types of the pass, as in cellist::Kernel.
     template <class... Uses>
     Pass(const cellist::Device& device, const Sampling& sampling, std::string_view source,
-         const std::string& name, const Uses&... uses)
-        : small_(make_kernel(device, pass_source(device, sampling, source, name, EdgeBits::narrow),
-                             "raster_draw_small", uses...)),
-          blocks_(make_kernel(device, pass_source(device, sampling, source, name, EdgeBits::wide),
-                              "raster_draw_blocks", uses...)) {}
+         const std::string& name, const Uses&... uses) {
+        const auto kernel = [&](EdgeBits edge_bits, const char* kernel_name) {
+            return make_kernel(device, pass_source(device, sampling, source, name, edge_bits),
+                               kernel_name, uses...);
+        };
+        if (draws_at_once(device)) {
+            all_.emplace(kernel(EdgeBits::wide, "raster_draw"));
+        } else {
+            small_.emplace(kernel(EdgeBits::narrow, "raster_draw_small"));
+            blocks_.emplace(kernel(EdgeBits::wide, "raster_draw_blocks"));
+        }
+    }
 
 private:
     friend class Triangles;
     // Edge functions of small triangles fit in 32 bits, those of large ones need 64.
     enum class EdgeBits { narrow, wide };
+    static bool draws_at_once(const cellist::Device& device);
     static cellist::Source pass_source(const cellist::Device& device, const Sampling& sampling,
                                        std::string_view source, const std::string& name,
                                        EdgeBits edge_bits);
-    cellist::Kernel small_;
-    cellist::Kernel blocks_;
+    std::optional<cellist::Kernel> all_;  ///< on GPUs: small triangles and blocks
+    std::optional<cellist::Kernel> small_;
+    std::optional<cellist::Kernel> blocks_;
 };
 
 /// Instances of meshes, projected into one or more views of the same size: a view an eye.
@@ -130,10 +139,11 @@ public:
     /// Moves the instances, which stay as many as they were, and the eyes. Blocks.
     void move(std::span<const Placed> placed, std::span<const View> views);
 
-    /// Projects the vertices. Does not block.
+    /// Projects the vertices, unless kernels do so where they load triangles. Does not block.
     void transform() {
-        kernels_.transform.run(vertex_range_, views_, instances_, batches_, geometry_.positions(),
-                               vertices_);
+        if (projects_once_)
+            kernels_.transform.run(vertex_range_, views_, instances_, batches_,
+                                   geometry_.positions(), vertices_);
     }
 
     [[nodiscard]] const cellist::Buffer<View>& views() const { return views_; }
@@ -143,11 +153,13 @@ public:
 
 private:
     friend class Triangles;
-    [[nodiscard]] std::vector<RasterBatch> triangle_batches(
-        std::span<const std::size_t> chosen) const;
+    [[nodiscard]] std::size_t triangles_of(std::span<const std::size_t> chosen) const;
+    [[nodiscard]] std::vector<RasterBatch> triangle_batches(std::span<const std::size_t> chosen,
+                                                            std::size_t most) const;
 
     SetupKernels& kernels_;
     const Geometry& geometry_;
+    bool projects_once_;
     std::size_t eyes_;
     std::vector<std::size_t> meshes_;  ///< of the instances, in each eye
     cellist::Buffer<View> views_;
@@ -156,6 +168,8 @@ private:
     cellist::Buffer<RasterVertex> vertices_;
     cellist::Range vertex_range_;
 };
+
+struct Batching;
 
 /// The triangles of some of the instances: divides the large ones into blocks of pixels, and draws
 /// all any number of times.
@@ -168,18 +182,24 @@ public:
 
     /// Puts the large triangles and their blocks into queues. Does not block.
     void bin() {
-        turn_ = 1 - turn_;
-        run(projection_.kernels_.bin, group_range_, counts_, turn_, queue_, capacity_of(queue_),
-            blocks_, capacity_of(blocks_), small_pixels_);
+        if (!without_queue_) {
+            turn_ = 1 - turn_;
+            run(projection_.kernels_.bin, group_range_, counts_, turn_, queue_, capacity_of(queue_),
+                blocks_, capacity_of(blocks_), small_pixels_);
+        }
+        drawn_ = false;
         counted_.reset();
         all_fitted_.reset();
     }
 
     /// Starts the read that finish_or_grow() waits for, which otherwise starts it. A read between
     /// kernels makes the device wait.
-    void read_counts() {
-        if (!counted_) counted_ = counts_.download_async();
-    }
+    void read_counts() { counted_ = counts_.download_async(); }
+
+    /// What kernels of the user take that leave a word for the host: RasterCounts::note.
+    [[nodiscard]] const cellist::Buffer<RasterCounts>& counts() const { return counts_; }
+    /// That word, as the last finish_or_grow() read it.
+    [[nodiscard]] cl_uint note() const { return note_; }
 
     /// Waits for bin(). False if the queues had no room for all: they have grown then, and whoever
     /// has drawn since bin() begins again there.
@@ -188,12 +208,19 @@ public:
     /// Draws with a pass whose RASTER_TARGET takes `targets`. Does not block.
     template <class... Targets>
     void draw(Pass& pass, const Targets&... targets) {
-        if (waiting_pixels_)
-            run(pass.small_, group_range_, targets..., small_pixels_, *waiting_pixels_);
-        else
-            run(pass.small_, group_range_, targets..., small_pixels_);
-        run(pass.blocks_, block_range_, targets..., counts_, turn_, queue_, capacity_of(queue_),
-            blocks_, capacity_of(blocks_));
+        const auto run_on_queues = [&](cellist::Kernel& kernel, const cellist::Range& range,
+                                       const auto&... args) {
+            run(kernel, range, args..., counts_, turn_, queue_, capacity_of(queue_), blocks_,
+                capacity_of(blocks_));
+        };
+        drawn_ = true;
+        if (pass.all_) {
+            run_on_queues(*pass.all_, without_queue_ ? group_range_ : block_range_, targets...,
+                          static_cast<cl_uint>(batches_.size()), small_pixels_, waiting_pixels_);
+        } else {
+            run(*pass.small_, group_range_, targets..., small_pixels_);
+            run_on_queues(*pass.blocks_, block_range_, targets...);
+        }
     }
 
     /// Runs a kernel whose last parameters are RASTER_SCENE. Does not block.
@@ -209,6 +236,8 @@ public:
     }
 
 private:
+    Triangles(const cellist::Device& device, const Projection& projection,
+              std::span<const std::size_t> chosen, const Share& share, const Batching& batching);
     template <class T>
     [[nodiscard]] static cl_uint capacity_of(const cellist::Buffer<T>& queue) {
         return static_cast<cl_uint>(queue.size());
@@ -219,14 +248,19 @@ private:
     cellist::Buffer<RasterBatch> batches_;
     cl_int small_pixels_;         ///< the size up to which triangles are not divided into blocks
     cellist::Range group_range_;  ///< a work-group for each batch
-    std::optional<cellist::LocalMemory> waiting_pixels_;  ///< of a work-group, on GPUs
-    cellist::Range block_range_;
+    cellist::Range block_range_;  ///< for blocks; on GPUs, group_range_ and more
+    cellist::LocalMemory waiting_pixels_;  ///< of a work-group, on GPUs
     cellist::Buffer<RasterTriangle> queue_;
     cellist::Buffer<RasterBlock> blocks_;
     cellist::Buffer<RasterCounts> counts_;  ///< of this bin() and the next, which take turns
+    cl_uint note_ = 0;
     cl_uint turn_ = 0;
     std::optional<cellist::Pending<std::vector<RasterCounts>>> counted_;
     std::optional<bool> all_fitted_;  ///< into the queues at the last bin(), once it is known
+    bool drawn_ = false;              ///< since the last bin()
+    // On GPUs, if all triangles are small: bin() does nothing, and draw() looks for others.
+    bool without_queue_ = false;
+    bool may_be_without_queue_;
 };
 
 }  // namespace raster

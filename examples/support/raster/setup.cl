@@ -3,14 +3,6 @@
 
 // ---- projection ---------------------------------------------------------------------------------
 
-// One bit for each plane that the point is outside of.
-static inline int raster_outside(const View* view, float x, float y, float w) {
-    int bits = 0;
-    for (int plane = 0; plane < RASTER_PLANES; ++plane)
-        if (!(raster_plane(view, plane, x, y, w) >= 0.0f)) bits |= 1 << plane;
-    return bits;
-}
-
 // Projects the vertices of all instances, a work-group for each batch of them. positions: 3 floats
 // a vertex.
 kernel void raster_transform(global const View* views, global const RasterInstance* instances,
@@ -19,17 +11,9 @@ kernel void raster_transform(global const View* views, global const RasterInstan
     const RasterBatch batch = batches[get_group_id(0)];
     const uint i = batch.first + get_local_id(0);
     if (i >= batch.end) return;
-    const float3 p = vload3(i, positions);
     const RasterInstance instance = instances[batch.instance];
     const View view = views[instance.eye];
-    const float x = raster_row(instance.row_x, p.x, p.y, p.z);
-    const float y = raster_row(instance.row_y, p.x, p.y, p.z);
-    RasterVertex vertex;
-    vertex.w = raster_row(instance.row_w, p.x, p.y, p.z);
-    vertex.outside = raster_outside(&view, x, y, vertex.w);
-    vertex.x = vertex.outside == 0 ? raster_snap(x, vertex.w, view.width) : 0;
-    vertex.y = vertex.outside == 0 ? raster_snap(y, vertex.w, view.height) : 0;
-    vertices[i + instance.vertex_offset] = vertex;
+    vertices[i + instance.vertex_offset] = raster_project(&view, &instance, vload3(i, positions));
 }
 
 // ---- binning ------------------------------------------------------------------------------------
@@ -37,7 +21,7 @@ kernel void raster_transform(global const View* views, global const RasterInstan
 // Puts large triangles and the pieces of clipped ones into a queue, and the blocks of pixels that
 // they touch into another.
 //
-//   counts           two elements that take turns; those of the turn start at 0, and count entries
+//   bin_counts       of two frames that take turns; those of the turn start at 0, and count entries
 //                    that a queue has no room for, too
 //   ..._capacity     of the queues
 
@@ -55,7 +39,7 @@ static inline uint raster_bin_team(uint triangles) {
 #define RASTER_COUNT_MAX 0x80000000u
 
 #define RASTER_BIN_QUEUES                                                                          \
-    volatile global RasterCounts *both_counts, const uint turn, global RasterTriangle *triangles,  \
+    volatile global RasterCounts *bin_counts, const uint turn, global RasterTriangle *triangles,   \
         const uint triangles_capacity, global RasterBlock *blocks, const uint blocks_capacity
 
 // Takes `wanted` entries of a queue, and returns the first.
@@ -123,8 +107,7 @@ kernel void raster_bin(RASTER_BIN_QUEUES, const int small_pixels, RASTER_SCENE) 
     local uint listed_count, unclipped, block_count, first;
     const uint item = get_local_id(0);
     if (item == 0) listed_count = unclipped = block_count = 0;
-    volatile global RasterCounts* counts = &both_counts[turn];
-    if (get_global_id(0) == 0) both_counts[1 - turn].triangles = both_counts[1 - turn].blocks = 0;
+    if (get_global_id(0) == 0) bin_counts->triangles[1 - turn] = bin_counts->blocks[1 - turn] = 0;
     barrier(CLK_LOCAL_MEM_FENCE);
 
     RasterTriangle t;
@@ -145,7 +128,7 @@ kernel void raster_bin(RASTER_BIN_QUEUES, const int small_pixels, RASTER_SCENE) 
                 RasterTriangle clipped = t;
                 raster_piece(&view, &polygon, piece, &clipped);
                 if (!raster_ready(&view, &clipped)) continue;
-                const uint at = raster_take(&counts->triangles, 1);
+                const uint at = raster_take(&bin_counts->triangles[turn], 1);
                 if (at >= triangles_capacity) continue;
                 triangles[at] = clipped;
                 const uint place = atomic_inc(&listed_count);
@@ -155,7 +138,7 @@ kernel void raster_bin(RASTER_BIN_QUEUES, const int small_pixels, RASTER_SCENE) 
         }
     }
     barrier(CLK_LOCAL_MEM_FENCE);
-    if (item == 0 && unclipped != 0) first = raster_take(&counts->triangles, unclipped);
+    if (item == 0 && unclipped != 0) first = raster_take(&bin_counts->triangles[turn], unclipped);
     barrier(CLK_LOCAL_MEM_FENCE);
     if (own != CELLIST_NONE && first + own < triangles_capacity) {
         const uint place = atomic_inc(&listed_count);
@@ -182,7 +165,7 @@ kernel void raster_bin(RASTER_BIN_QUEUES, const int small_pixels, RASTER_SCENE) 
     }
     uint next = touched != 0 ? atomic_add(&block_count, touched) : 0;
     barrier(CLK_LOCAL_MEM_FENCE);
-    if (item == 0 && block_count != 0) first = raster_take(&counts->blocks, block_count);
+    if (item == 0 && block_count != 0) first = raster_take(&bin_counts->blocks[turn], block_count);
     barrier(CLK_LOCAL_MEM_FENCE);
     if (touched == 0) return;
     next += first;

@@ -87,12 +87,14 @@ struct RasterBlock {
 };
 CELLIST_STRUCT(RasterBlock, triangle, place);
 
-/// Entries of the two queues, also those for which they have no room.
+/// Entries of the two queues, also those for which they have no room, of two frames that take
+/// turns.
 struct RasterCounts {
-    cl_uint triangles;
-    cl_uint blocks;
+    cl_uint triangles[2];
+    cl_uint blocks[2];
+    cl_uint note;  ///< the user's: see Triangles::note()
 };
-CELLIST_STRUCT(RasterCounts, triangles, blocks);
+CELLIST_STRUCT(RasterCounts, triangles, blocks, note);
 
 /// Where a sample of a pixel lies: 1/16 pixel from its centre.
 struct SampleOffset {

@@ -9,7 +9,9 @@
 
 #include "mesh.hpp"
 #include "raster/rasteriser.hpp"
+#include "support/catch.hpp"
 #include "support/device.hpp"
+#include "support/internals.hpp"
 
 namespace cellist::test {
 
@@ -34,8 +36,8 @@ inline raster::View pixel_view(int width, int height) {
 }
 
 /// Draws a mesh through the rasteriser, with a pass that counts.
-inline Coverage coverage_of(const support::Mesh& mesh, const raster::View& view,
-                            const raster::Sampling& sampling = {}) {
+inline Coverage coverage_on(const Device& device, const support::Mesh& mesh,
+                            const raster::View& view, const raster::Sampling& sampling) {
     constexpr auto source = R"(
 #define RASTER_TARGET volatile global uint* counts, global float* depths
 #define RASTER_TARGET_PASS counts, depths
@@ -48,18 +50,18 @@ static inline void raster_emit(RASTER_TARGET, const View* view,
     depths[pixel] = covered->depth;
 }
 )";
-    raster::SetupKernels setup(device(), sampling);
-    raster::Pass pass(device(), sampling, source, "count.cl");
+    raster::SetupKernels setup(device, sampling);
+    raster::Pass pass(device, sampling, source, "count.cl");
     const support::Mesh* const meshes[] = {&mesh};
-    const raster::Geometry geometry(device(), meshes);
+    const raster::Geometry geometry(device, meshes);
     const raster::Placed placed[] = {{}};
-    raster::Projection projection(device(), setup, geometry, placed, std::span(&view, 1));
+    raster::Projection projection(device, setup, geometry, placed, std::span(&view, 1));
     const std::size_t all[] = {0};
-    raster::Triangles triangles(device(), projection, all);
+    raster::Triangles triangles(device, projection, all);
     const auto pixels =
         static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
-    Buffer<cl_uint> counts(device(), pixels * static_cast<std::size_t>(sampling.samples));
-    Buffer<cl_float> depths(device(), pixels);
+    Buffer<cl_uint> counts(device, pixels * static_cast<std::size_t>(sampling.samples));
+    Buffer<cl_float> depths(device, pixels);
     projection.transform();
     do {
         counts.fill(0);
@@ -68,6 +70,15 @@ static inline void raster_emit(RASTER_TARGET, const View* view,
         triangles.draw(pass, counts, depths);
     } while (!triangles.finish_or_grow());
     return {counts.download(), depths.download()};
+}
+
+/// The same on the device of the tests. Requires the same counts where it draws as a GPU.
+inline Coverage coverage_of(const support::Mesh& mesh, const raster::View& view,
+                            const raster::Sampling& sampling = {}) {
+    static const Device gpu = like_gpu();
+    Coverage coverage = coverage_on(device(), mesh, view, sampling);
+    REQUIRE(coverage_on(gpu, mesh, view, sampling).counts == coverage.counts);
+    return coverage;
 }
 
 /// A point in 1/256 pixel from the centre of the image.
