@@ -105,14 +105,16 @@ public:
     /// Enqueues such a kernel; `args` are those in front of OIT_SCREEN.
     template <class... Args>
     void run_on_screen(cellist::Kernel& step, const Args&... args) {
-        const cellist::Buffer<cl_float4>& image = sample_image_ ? *sample_image_ : image_;
-        if (draws_exactly())
-            transparent_.run(step, screen_, args..., constants_, image);
-        else if (opaque_)
-            step.run(screen_, args..., constants_, projection_.views(), opaque_->depth_bits,
-                     opaque_->colour, image);
-        else
-            step.run(screen_, args..., constants_, projection_.views(), image);
+        run_on(screen_, step, args...);
+    }
+
+    /// The same, but each work-item, which is a group of its own, takes `places` of a row.
+    template <class... Args>
+    void run_on_strips(std::size_t places, cellist::Kernel& step, const Args&... args) {
+        cellist::Range strips((screen_.global[0] + places - 1) / places, screen_.global[1],
+                              screen_.global[2]);
+        strips.local = {1, 1, 1};
+        run_on(strips, step, args...);
     }
 
     /// Averages samples that were blended on their own. Does not block.
@@ -149,6 +151,18 @@ public:
     [[nodiscard]] std::uint64_t device_bytes() const;
 
 private:
+    template <class... Args>
+    void run_on(const cellist::Range& range, cellist::Kernel& step, const Args&... args) {
+        const cellist::Buffer<cl_float4>& image = sample_image_ ? *sample_image_ : image_;
+        if (draws_exactly())
+            transparent_.run(step, range, args..., constants_, image);
+        else if (opaque_)
+            step.run(range, args..., constants_, projection_.views(), opaque_->depth_bits,
+                     opaque_->colour, image);
+        else
+            step.run(range, args..., constants_, projection_.views(), image);
+    }
+
     // What only a frame with opaque surfaces has.
     struct Opaque {
         // Without Quality::reduce.

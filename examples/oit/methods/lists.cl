@@ -19,6 +19,7 @@ static inline void oit_store(OIT_TARGET, const OitFrame* frame, const OitLocatio
 // The lists are sorted by key. With OIT_NEAREST=K they need not be, and the K nearest fragments of
 // each are blended; OIT_LAYERS=K stops after the first K of a sorted list. With OIT_SORTED=N they
 // need not be sorted either. If one has N fragments or more, the kernel leaves the note `longer`.
+// With OIT_STRIP=N, too, each work-item blends N places of a row.
 #ifdef OIT_SORTED
 #define OIT_LONGER , global RasterCounts *bin_counts, const uint longer
 
@@ -57,6 +58,24 @@ static inline void oit_insert_entry(CELLIST_LISTS(OIT_NODE, fragments), OitEntri
     }
     keys[at] = key;
     nodes[at] = node;
+}
+
+// Sorts entries: at least those that are blended.
+static inline void oit_sort_entries(CELLIST_LISTS(OIT_NODE, fragments), OitEntries* entries) {
+    for (uint i = 1; i < entries->found; ++i) {
+        const uint key = entries->keys[i];
+        if (i >= OIT_LAYERS && key > entries->keys[OIT_LAYERS - 1]) continue;
+        oit_insert_entry(CELLIST_PASS(fragments), entries, min(i, (uint)OIT_LAYERS), key,
+                         entries->nodes[i]);
+    }
+}
+
+// Blends sorted entries.
+static inline void oit_blend_entries(CELLIST_LISTS(OIT_NODE, fragments), const OitEntries* entries,
+                                     const OitPixel* pixel, OitBlendState* blended) {
+    const uint layers = min(entries->found, (uint)OIT_LAYERS);
+    for (uint i = 0; i < layers && !oit_done(blended, pixel); ++i)
+        oit_blend_node(CELLIST_PASS(fragments), entries->nodes[i], pixel, blended);
 }
 
 #ifdef OIT_RUN
@@ -164,16 +183,60 @@ static inline void oit_blend_list(CELLIST_LISTS(OIT_NODE, fragments), uint cell,
         if (oit_blend_runs(CELLIST_PASS(fragments), entries, pixel, blended)) return;
         *blended = oit_blend_state();
     }
-    for (uint i = 1; i < found; ++i)
-        oit_insert_entry(CELLIST_PASS(fragments), entries, i, entries->keys[i], entries->nodes[i]);
+    oit_sort_entries(CELLIST_PASS(fragments), entries);
 #endif
-    for (uint i = 0; i < min(found, (uint)OIT_LAYERS) && !oit_done(blended, pixel); ++i)
-        oit_blend_node(CELLIST_PASS(fragments), entries->nodes[i], pixel, blended);
+    oit_blend_entries(CELLIST_PASS(fragments), entries, pixel, blended);
 }
 #else
 #define OIT_LONGER
 #endif
 
+#ifdef OIT_STRIP
+// Finds the entries of the lists of a strip. A processor waits for the nodes of many lists at once
+// if it visits one node of each at a time.
+static inline void oit_find_entries(CELLIST_LISTS(OIT_NODE, fragments), uint first,
+                                    OitEntries* entries) {
+    uint visited[OIT_STRIP], next[OIT_STRIP], end[OIT_STRIP];
+    uint lists = 0;
+    for (uint i = 0; i < OIT_STRIP; ++i) {
+        const uint cell =
+            cellist_cell3(fragments, (first + i) / OIT_PLACES, get_global_id(1), get_global_id(2));
+        entries[i].found = 0;
+        end[i] = cellist_end(fragments_heads, cellist_view_of(fragments), cell);
+        next[i] = cellist_begin(fragments_heads, cellist_view_of(fragments), cell);
+        visited[lists] = i;
+        if (next[i] < end[i]) ++lists;
+    }
+    for (uint n = 0; n < OIT_SORTED && lists > 0; ++n) {
+        uint more = 0;
+        for (uint k = 0; k < lists; ++k) {
+            const uint i = visited[k], node = next[i];
+            entries[i].keys[n] = cellist_get(fragments, node).key;
+            entries[i].nodes[n] = node;
+            entries[i].found = n + 1;
+            next[i] = cellist_next(fragments_nodes, fragments_typed, node);
+            visited[more] = i;
+            if (next[i] < end[i]) ++more;
+        }
+        lists = more;
+    }
+}
+
+kernel void oit_resolve_lists(CELLIST_LISTS(OIT_NODE, fragments) OIT_LONGER, OIT_SCREEN) {
+    OitEntries entries[OIT_STRIP];
+    const uint first = get_global_id(0) * OIT_STRIP;
+    oit_find_entries(CELLIST_PASS(fragments), first, entries);
+    for (uint i = 0; i < OIT_STRIP; ++i) {
+        OitPixel pixel;
+        if (!oit_pixel_at(OIT_SCREEN_PASS, first + i, &pixel)) continue;
+        OitBlendState blended = oit_blend_state();
+        oit_sort_entries(CELLIST_PASS(fragments), &entries[i]);
+        oit_blend_entries(CELLIST_PASS(fragments), &entries[i], &pixel, &blended);
+        if (entries[i].found == OIT_SORTED) bin_counts->note = longer;
+        oit_write(OIT_SCREEN_PASS, &pixel, &blended);
+    }
+}
+#else
 kernel void oit_resolve_lists(CELLIST_LISTS(OIT_NODE, fragments) OIT_LONGER, OIT_SCREEN) {
     OitPixel pixel;
     if (!oit_pixel(OIT_SCREEN_PASS, &pixel)) return;
@@ -203,5 +266,6 @@ kernel void oit_resolve_lists(CELLIST_LISTS(OIT_NODE, fragments) OIT_LONGER, OIT
 #endif
     oit_write(OIT_SCREEN_PASS, &pixel, &blended);
 }
+#endif
 
 #endif
