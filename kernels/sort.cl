@@ -188,8 +188,9 @@ static inline uint cellist_sort_rank(CELLIST_SORT_SHARED const cellist_sort_bits
     uint sum = 0;
     cellist_sort_each_run(n, at, member, length) {
         cellist_sort_count(keys, length, at, ranks + n * CELLIST_SORT_WIDTH);
-        for (uint i = 0; i < CELLIST_SORT_WIDTH && at + i < length; ++i)
-            sum += ranks[n * CELLIST_SORT_WIDTH + i];
+#pragma unroll
+        for (uint i = 0; i < CELLIST_SORT_WIDTH; ++i)
+            if (at + i < length) sum += ranks[n * CELLIST_SORT_WIDTH + i];
     }
     return sum;
 }
@@ -203,8 +204,9 @@ static inline int cellist_sort_unique(uint sum, uint length) {
 static inline void cellist_sort_order(const uint* ranks, uint length, uint member,
                                       CELLIST_SORT_SHARED uchar* order) {
     cellist_sort_each_run(n, at, member, length) {
-        for (uint i = 0; i < CELLIST_SORT_WIDTH && at + i < length; ++i)
-            order[ranks[n * CELLIST_SORT_WIDTH + i]] = (uchar)(at + i);
+#pragma unroll
+        for (uint i = 0; i < CELLIST_SORT_WIDTH; ++i)
+            if (at + i < length) order[ranks[n * CELLIST_SORT_WIDTH + i]] = (uchar)(at + i);
     }
 }
 
@@ -216,15 +218,16 @@ static inline void cellist_sort_permute(global cellist_sort_node* nodes, uint fi
     global cellist_sort_piece* pieces = (global cellist_sort_piece*)(nodes + first);
     cellist_sort_piece moved[CELLIST_SORT_CHUNK_SIZE / CELLIST_SORT_TEAM];
     for (uint piece = 0; piece < CELLIST_SORT_PIECES; ++piece) {
+#pragma unroll
         for (uint i = 0; i < CELLIST_SORT_CHUNK_SIZE / CELLIST_SORT_TEAM; ++i) {
             const uint at = member + i * CELLIST_SORT_TEAM;
-            if (at >= length) break;
-            moved[i] = pieces[(ulong)order[at] * CELLIST_SORT_PIECES + piece];
+            if (at < length) moved[i] = pieces[(ulong)order[at] * CELLIST_SORT_PIECES + piece];
         }
         cellist_sort_barrier();
+#pragma unroll
         for (uint i = 0; i < CELLIST_SORT_CHUNK_SIZE / CELLIST_SORT_TEAM; ++i) {
             const uint at = member + i * CELLIST_SORT_TEAM;
-            if (at >= length) break;
+            if (at >= length) continue;
 #if CELLIST_MODES == CELLIST_LINKED && !defined(CELLIST_SORT_PIECE)
             moved[i].stored.next = cellist_sort_link(first + at, last);
 #endif

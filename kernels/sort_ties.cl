@@ -44,8 +44,11 @@ static inline cellist_sort_bits cellist_sort_without_word(cellist_sort_bits key)
 // What is known about ties at first. Other work-items change it meanwhile: it affects the time
 // alone.
 static inline cellist_sort_ties cellist_sort_known_ties(volatile global cellist_sort_state* state) {
-    const cellist_sort_ties ties = {state->ties.ranked_lists, state->ties.tied_lists,
-                                    state->ties.tie_level};
+    cellist_sort_ties ties = {0, 0, 0};
+    if (CELLIST_SORT_ITEMS > 1) return ties;
+    ties.ranked_lists = state->ties.ranked_lists;
+    ties.tied_lists = state->ties.tied_lists;
+    ties.tie_level = state->ties.tie_level;
     return ties;
 }
 
@@ -91,16 +94,21 @@ static inline void cellist_sort_add_first_word(global const cellist_sort_node* n
 #if CELLIST_SORT_ITEMS > 1
 
 // Writes the order where keys may be equal. Equal records stay in theirs.
+//
+// Does not use the ranks that were found: this index would keep them in memory, also for lists
+// without equal keys. The work-items of a warp look for their next equal keys together, and then
+// compare records together.
 static void cellist_sort_order_equal(global const cellist_sort_node* nodes, uint first,
                                      local const uint* index, local const cellist_sort_bits* keys,
-                                     uint length, uint member, cellist_sort_ties* ties, uint* ranks,
-                                     local uchar* order) {
+                                     uint length, uint member, cellist_sort_ties* ties,
+                                     const uint* ranks, local uchar* order) {
     cellist_sort_each_run(n, at, member, length) {
         for (uint i = at; i < at + CELLIST_SORT_WIDTH && i < length; ++i) {
             const cellist_sort_bits key = keys[i];
-            uint rank = ranks[n * CELLIST_SORT_WIDTH + i - at];
+            uint rank = 0;
             for (uint j = 0; j < length; ++j) {
-                if (keys[j] != key || j == i) continue;
+                for (; j < length && (keys[j] != key || j == i); ++j) rank += keys[j] < key;
+                if (j == length) break;
                 rank +=
                     cellist_record_before(cellist_sort_at(j), cellist_sort_at(i), 0) ||
                     (j < i && !cellist_record_before(cellist_sort_at(i), cellist_sort_at(j), 0));
