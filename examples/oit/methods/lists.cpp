@@ -11,11 +11,11 @@
 namespace oit {
 namespace {
 
+bool is_gpu(const cellist::DeviceInfo& device) { return (device.type & CL_DEVICE_TYPE_GPU) != 0; }
+
 // Up to here, the reader keeps the nearest layers in registers while it visits a list once. For
 // more, sorting the lists is faster.
-constexpr std::uint32_t nearest_max = 16;
-
-bool is_gpu(const cellist::DeviceInfo& device) { return (device.type & CL_DEVICE_TYPE_GPU) != 0; }
+std::uint32_t nearest_max(const cellist::DeviceInfo& device) { return is_gpu(device) ? 8 : 16; }
 
 // The longest lists that the reader sorts itself; longer ones are sorted before.
 constexpr std::uint32_t sorted_in_reader_max = 127;
@@ -46,8 +46,8 @@ ListReader blending_reader(const Quality& quality, bool needs_sorted, std::strin
     return {defines.append(kernels::lists_cl), "lists.cl", "oit_resolve_lists", needs_sorted};
 }
 
-ListReader first_reader(const Quality& quality) {
-    if (quality.layers && *quality.layers <= nearest_max)
+ListReader first_reader(const Quality& quality, const cellist::DeviceInfo& device) {
+    if (quality.layers && *quality.layers <= nearest_max(device))
         return blending_reader(quality, false, define("OIT_NEAREST", *quality.layers));
     return blending_reader(quality, true);
 }
@@ -274,12 +274,14 @@ const MethodRegistration fixed_method(
 
 std::string_view list_pass() { return kernels::lists_cl; }
 
-ListReader list_reader(const Quality& quality) { return first_reader(quality); }
+ListReader list_reader(FragmentSource& source) {
+    return first_reader(source.frame().quality, source.device().info());
+}
 
 std::unique_ptr<Method> make_list_method(FragmentSource& source,
                                          const cellist::ListsOptions& options,
                                          const std::optional<ListReader>& other_reader) {
-    const ListReader reader = other_reader ? *other_reader : first_reader(source.frame().quality);
+    const ListReader reader = other_reader ? *other_reader : list_reader(source);
     if (source.frame().memory_bytes && options.overflow == cellist::Overflow::grow)
         return make_list_slices(source, options, reader);
     // GPUs keep few layers in registers while they visit a list in no order.

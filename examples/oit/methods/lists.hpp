@@ -23,8 +23,8 @@ struct ListReader {
 /// The source of the pass that puts fragments into lists: see FragmentSource::pass().
 [[nodiscard]] std::string_view list_pass();
 
-/// The reader that blends a picture of this quality, nearest first.
-[[nodiscard]] ListReader list_reader(const Quality& quality);
+/// The reader that blends a picture of the quality of the frame, nearest first.
+[[nodiscard]] ListReader list_reader(FragmentSource& source);
 
 /// The method that keeps fragments in cellist::Lists with these options, and blends them nearest
 /// first; or leaves that to another reader. Under Frame::memory_bytes, a slice of the pixels at a

@@ -22,7 +22,7 @@ template <class Node>
 class DistributedLists : public Method {
 public:
     DistributedLists(FragmentSource& source, cellist::Storage storage)
-        : DistributedLists(source, storage, list_reader(source.frame().quality)) {}
+        : DistributedLists(source, storage, list_reader(source)) {}
 
     void store() override {
         // No rank may restart a frame alone, so make room for the triangles before the build.
