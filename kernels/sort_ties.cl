@@ -42,7 +42,7 @@ static inline cellist_sort_bits cellist_sort_without_word(cellist_sort_bits key)
 }
 
 // What is known about ties at first. Other work-items change it meanwhile: it affects the time
-// alone.
+// alone. Nothing on GPUs, which do not use it: all work-items would read the same words.
 static inline cellist_sort_ties cellist_sort_known_ties(volatile global cellist_sort_state* state) {
     cellist_sort_ties ties = {0, 0, 0};
     if (CELLIST_SORT_ITEMS > 1) return ties;
@@ -95,9 +95,9 @@ static inline void cellist_sort_add_first_word(global const cellist_sort_node* n
 
 // Writes the order where keys may be equal. Equal records stay in theirs.
 //
-// Does not use the ranks that were found: this index would keep them in memory, also for lists
-// without equal keys. The work-items of a warp look for their next equal keys together, and then
-// compare records together.
+// Has the parameters that processors need, but does not read `ranks`: an index that is not constant
+// would force the array out of registers, also for lists without equal keys. The work-items of a
+// warp look for their next equal keys together, and then compare records together.
 static void cellist_sort_order_equal(global const cellist_sort_node* nodes, uint first,
                                      local const uint* index, local const cellist_sort_bits* keys,
                                      uint length, uint member, cellist_sort_ties* ties,

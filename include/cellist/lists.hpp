@@ -149,9 +149,11 @@ public:
     /// records.
     ///
     /// In Storage::linked and Storage::fixed, an append takes the time of its own inserts, unless
-    /// the pool grows. Storage::fixed also copies and sums its counts. In all other cases the
-    /// append copies the existing records and inserts them again: it takes about as long as a build
-    /// of all records, and device memory for the copy. The order in a list is undefined afterwards.
+    /// the pool grows. Storage::fixed also copies and sums its counts. Storage::counted copies the
+    /// existing records, moves them to their new places, and runs the kernel twice. In all other
+    /// cases the append copies the existing records and inserts them again, which takes about as
+    /// long as a build of all records. Copies take device memory. The order in a list is undefined
+    /// afterwards.
     template <class... Args>
     BuildReport append(Kernel& kernel, const Range& range, const Args&... args) {
         return core_->append([&] { run(kernel, range, args...); });

@@ -13,8 +13,8 @@
 
 namespace cellist::detail {
 
-/// A duplicate of the program's communicator. All functions but begin() and those that return what
-/// the communicator is are collective.
+/// A duplicate of the program's communicator. All functions are collective, except begin() and
+/// the accessors: get(), rank(), size(), host(), host_rank() and host_ranks().
 class Communicator {
 public:
     /// Throws Error if MPI is not ready for the library.

@@ -308,6 +308,7 @@ void CountedStorage::make_room(const BuildReport& report) {
                                     " records is over the limit of Storage::counted",
                                 report);
         pool_.grow(demand, report);
+        // In an append, their memory may hold the copy of the lists, which lives until its end.
         if (!pool_.has_room_for(0)) set_partitions(nullptr);
     }
     scan_.write_offsets(pool_.heads().cl(), pool_.heads().cl(), capacity_nodes());
@@ -320,7 +321,7 @@ void CountedStorage::reset_passes() {
 }
 
 void CountedStorage::reserve(std::uint64_t total, std::uint64_t longest) {
-    set_partitions(nullptr);
+    if (total > capacity_nodes()) set_partitions(nullptr);
     ListStorage::reserve(total, longest);
 }
 

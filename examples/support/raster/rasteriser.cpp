@@ -17,7 +17,9 @@ namespace {
 constexpr std::size_t batch_size = 64;         // RASTER_BATCH in triangle.clh
 constexpr std::size_t first_capacity = 16384;  // of the queues
 
-bool is_gpu(const cellist::Device& device) { return device.info().type == CL_DEVICE_TYPE_GPU; }
+bool is_gpu(const cellist::Device& device) {
+    return (device.info().type & CL_DEVICE_TYPE_GPU) != 0;
+}
 
 // What suits a device. On GPUs, a work-item tests the pixels of a cell, and the work-items of a
 // group share out those that are covered. On CPUs, a work-item is a loop of a thread, and scans a
@@ -155,7 +157,7 @@ Batching batching_for(const cellist::Device& device, std::size_t triangles) {
     if (triangles >= 8 * units * batch_size) return {batch_size, batch_size, 16};
     const std::size_t groups = 6 * units;
     return {std::clamp<std::size_t>((triangles + groups - 1) / groups, 1, batch_size),
-            4 * batch_size, 32};
+            std::min<std::size_t>(4 * batch_size, device.info().max_work_group_size), 32};
 }
 
 // The words of raster_draw for pixels that wait: see draw.clh.

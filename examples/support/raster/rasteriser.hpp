@@ -180,7 +180,8 @@ public:
     Triangles(const cellist::Device& device, const Projection& projection,
               std::span<const std::size_t> chosen, const Share& share = {});
 
-    /// Puts the large triangles and their blocks into queues. Does not block.
+    /// Puts the large triangles and their blocks into queues. Does nothing on GPUs while all
+    /// triangles are small. Does not block.
     void bin() {
         if (!without_queue_) {
             turn_ = 1 - turn_;
@@ -201,8 +202,9 @@ public:
     /// That word, as the last finish_or_grow() read it.
     [[nodiscard]] cl_uint note() const { return note_; }
 
-    /// Waits for bin(). False if the queues had no room for all: they have grown then, and whoever
-    /// has drawn since bin() begins again there.
+    /// Waits for the counts. False if the queues had no room for all, and have grown, or if a frame
+    /// without queues met a large triangle: the next bin() fills queues. Whoever has drawn since
+    /// bin() begins again there.
     [[nodiscard]] bool finish_or_grow();
 
     /// Draws with a pass whose RASTER_TARGET takes `targets`. Does not block.
