@@ -15,7 +15,8 @@ foreach(ranks IN ITEMS 1 2 3 4 8)
     set(picture "${folder}/${ranks}.png")
     file(REMOVE "${picture}")
     execute_process(
-        COMMAND ${mpiexec} ${ranks} "${program}" --mpi ${arguments} --frames 2 --out "${picture}"
+        COMMAND ${mpiexec} ${ranks} "${CMAKE_CURRENT_LIST_DIR}/../support/as_rank.sh"
+            "${program}" --mpi ${arguments} --frames 2 --out "${picture}"
         OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
     file(SHA256 "${folder}/plain.png" expected)
     file(SHA256 "${picture}" found)
