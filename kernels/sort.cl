@@ -52,6 +52,10 @@ typedef ulong cellist_sort_bits;
 #define CELLIST_SORT_SHARED local
 #define cellist_sort_item() ((uint)get_local_id(0))
 #define cellist_sort_barrier() barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE)
+// What work-items of a GPU have in arrays stays in registers only where loops are unrolled, which
+// needs a constant number of steps. On CPUs that takes much longer, to compile and to run.
+#define cellist_sort_each(i, most, condition)                                                      \
+    _Pragma("unroll") for (uint i = 0; i < (most); ++i) if (condition)
 // Neighbouring lists begin in different banks of local memory.
 #define CELLIST_SORT_STRIDE (CELLIST_SORT_CHUNK_SIZE + 1)
 static inline uint cellist_sort_add(local uint* sum, uint value) { return atomic_add(sum, value); }
@@ -60,6 +64,7 @@ static inline uint cellist_sort_add(local uint* sum, uint value) { return atomic
 #define CELLIST_SORT_SHARED
 #define cellist_sort_item() 0u
 #define cellist_sort_barrier()
+#define cellist_sort_each(i, most, condition) for (uint i = 0; i < (most) && (condition); ++i)
 #define CELLIST_SORT_STRIDE CELLIST_SORT_CHUNK_SIZE
 static inline uint cellist_sort_add(uint* sum, uint value) {
     *sum += value;
@@ -188,9 +193,9 @@ static inline uint cellist_sort_rank(CELLIST_SORT_SHARED const cellist_sort_bits
     uint sum = 0;
     cellist_sort_each_run(n, at, member, length) {
         cellist_sort_count(keys, length, at, ranks + n * CELLIST_SORT_WIDTH);
-#pragma unroll
-        for (uint i = 0; i < CELLIST_SORT_WIDTH; ++i)
-            if (at + i < length) sum += ranks[n * CELLIST_SORT_WIDTH + i];
+        cellist_sort_each(i, CELLIST_SORT_WIDTH, at + i < length) {
+            sum += ranks[n * CELLIST_SORT_WIDTH + i];
+        }
     }
     return sum;
 }
@@ -204,9 +209,9 @@ static inline int cellist_sort_unique(uint sum, uint length) {
 static inline void cellist_sort_order(const uint* ranks, uint length, uint member,
                                       CELLIST_SORT_SHARED uchar* order) {
     cellist_sort_each_run(n, at, member, length) {
-#pragma unroll
-        for (uint i = 0; i < CELLIST_SORT_WIDTH; ++i)
-            if (at + i < length) order[ranks[n * CELLIST_SORT_WIDTH + i]] = (uchar)(at + i);
+        cellist_sort_each(i, CELLIST_SORT_WIDTH, at + i < length) {
+            order[ranks[n * CELLIST_SORT_WIDTH + i]] = (uchar)(at + i);
+        }
     }
 }
 
@@ -216,18 +221,16 @@ static inline void cellist_sort_permute(global cellist_sort_node* nodes, uint fi
                                         uint length, uint member,
                                         CELLIST_SORT_SHARED const uchar* order) {
     global cellist_sort_piece* pieces = (global cellist_sort_piece*)(nodes + first);
+    const uint most = CELLIST_SORT_CHUNK_SIZE / CELLIST_SORT_TEAM;
     cellist_sort_piece moved[CELLIST_SORT_CHUNK_SIZE / CELLIST_SORT_TEAM];
     for (uint piece = 0; piece < CELLIST_SORT_PIECES; ++piece) {
-#pragma unroll
-        for (uint i = 0; i < CELLIST_SORT_CHUNK_SIZE / CELLIST_SORT_TEAM; ++i) {
-            const uint at = member + i * CELLIST_SORT_TEAM;
-            if (at < length) moved[i] = pieces[(ulong)order[at] * CELLIST_SORT_PIECES + piece];
+        cellist_sort_each(i, most, member + i * CELLIST_SORT_TEAM < length) {
+            const uint from = order[member + i * CELLIST_SORT_TEAM];
+            moved[i] = pieces[(ulong)from * CELLIST_SORT_PIECES + piece];
         }
         cellist_sort_barrier();
-#pragma unroll
-        for (uint i = 0; i < CELLIST_SORT_CHUNK_SIZE / CELLIST_SORT_TEAM; ++i) {
+        cellist_sort_each(i, most, member + i * CELLIST_SORT_TEAM < length) {
             const uint at = member + i * CELLIST_SORT_TEAM;
-            if (at >= length) continue;
 #if CELLIST_MODES == CELLIST_LINKED && !defined(CELLIST_SORT_PIECE)
             moved[i].stored.next = cellist_sort_link(first + at, last);
 #endif
