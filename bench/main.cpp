@@ -93,7 +93,7 @@ Options parse(int argc, char** argv) {
 }
 
 cl_uint default_nodes(const cellist::Device& device, bench::Effort effort) {
-    const bool gpu = (device.info().type & CL_DEVICE_TYPE_GPU) != 0;
+    const bool gpu = device.info().is_gpu();
     if (effort == bench::Effort::tiny) return least_nodes;
     const cl_uint full = gpu ? 1u << 26 : 1u << 22;
     return effort == bench::Effort::quick ? full / 4 : full;
@@ -143,7 +143,7 @@ int main(int argc, char** argv) try {
 
     const cellist::Device device = profiled(cellist::Device::choose());
     const cellist::DeviceInfo& info = device.info();
-    const bool gpu = (info.type & CL_DEVICE_TYPE_GPU) != 0;
+    const bool gpu = info.is_gpu();
     if (options.nodes == 0) options.nodes = default_nodes(device, options.effort);
     if (options.threads == 0)
         options.threads =

@@ -72,7 +72,7 @@ std::string library() {
 void run(const Options& options, const support::MpiJob& job) {
     const cellist::Device device = cellist::mpi::choose(MPI_COMM_WORLD);
     const cellist::DeviceInfo& info = device.info();
-    const bool gpu = (info.type & CL_DEVICE_TYPE_GPU) != 0;
+    const bool gpu = info.is_gpu();
     nlohmann::ordered_json results{
         {"device", info.name},
         {"platform", info.platform},

@@ -60,7 +60,7 @@ Suite::Suite(const cellist::Device& device, Effort effort, cl_uint nodes, cl_uin
     : device_(device), effort_(effort), nodes_(nodes), occupancy_(occupancy), threads_(threads) {
     if (effort == Effort::tiny) sampling_ = {.least = 1, .most = 1, .seconds = 0};
     // A GPU takes as many samples in less time.
-    const bool gpu = (device.info().type & CL_DEVICE_TYPE_GPU) != 0;
+    const bool gpu = device.info().is_gpu();
     if (gpu) sampling_.seconds = 0.15;
     if (effort == Effort::quick) sampling_.seconds = 0.1;
 }

@@ -38,6 +38,8 @@ struct DeviceInfo {
     bool warp_aggregation = false;
     /// A work-group runs on one thread: PoCL on x86-64 and AArch64 processors.
     bool one_thread_per_work_group = false;
+
+    [[nodiscard]] bool is_gpu() const { return (type & CL_DEVICE_TYPE_GPU) != 0; }
 };
 
 /// An OpenCL device with a context, a queue and a cache of built programs. Objects that are made

@@ -23,7 +23,7 @@ constexpr std::uint32_t k_max = 64;
 constexpr std::size_t team_size = 64;
 
 bool has_teams(const DeviceInfo& device) {
-    return (device.type & CL_DEVICE_TYPE_GPU) != 0 && device.max_work_group_size >= team_size;
+    return device.is_gpu() && device.max_work_group_size >= team_size;
 }
 
 Range range_of(std::uint64_t queries, const DeviceInfo& device) {

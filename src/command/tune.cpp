@@ -45,7 +45,7 @@ constexpr int builds = 5;  ///< the first one warms up
 
 /// The number of records: more than caches hold, within an eighth of the device's memory.
 std::uint64_t record_count(const DeviceInfo& device) {
-    const std::uint64_t wanted = (device.type & CL_DEVICE_TYPE_GPU) != 0 ? 1u << 24 : 1u << 22;
+    const std::uint64_t wanted = device.is_gpu() ? 1u << 24 : 1u << 22;
     // In Storage::fixed a cell may have slots for four times the mean.
     const std::uint64_t most =
         std::min(device.max_allocation_bytes, device.global_memory_bytes / 8) /

@@ -29,7 +29,7 @@ constexpr std::size_t gathered_bytes_most = 256;
 
 bool gathers_together(const RecordKernels& kernels) {
     const DeviceInfo& device = kernels.owner()->info;
-    return (device.type & CL_DEVICE_TYPE_GPU) != 0 && device.local_memory_bytes >= 32768 &&
+    return device.is_gpu() && device.local_memory_bytes >= 32768 &&
            device.max_work_group_size >= gather_group &&
            kernels.record().size <= gathered_bytes_most;
 }

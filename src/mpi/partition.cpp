@@ -22,7 +22,7 @@ Device choose(MPI_Comm comm) {
         } else {
             const std::vector<DeviceInfo> all = Device::all();
             for (std::size_t i = 0; i < all.size(); ++i)
-                if ((all[i].type & CL_DEVICE_TYPE_GPU) != 0) devices.push_back(i);
+                if (all[i].is_gpu()) devices.push_back(i);
         }
         device = devices.empty() ? Device::choose()
                                  : Device::choose(std::to_string(

@@ -94,8 +94,7 @@ std::optional<Partitions::Plan> Partitions::plan(const DeviceInfo& device, std::
                                                  std::size_t record_bytes, std::uint64_t cells,
                                                  std::uint64_t records) {
     Plan plan{.records = records + records / growth_part, .node_bytes = node_bytes};
-    if ((device.type & CL_DEVICE_TYPE_GPU) != 0)
-        return plan_regions(plan, device, record_bytes, cells, records);
+    if (device.is_gpu()) return plan_regions(plan, device, record_bytes, cells, records);
     if (!device.one_thread_per_work_group) return {};
     const std::uint64_t threads = std::max(device.compute_units, 1U);
     const std::uint64_t unfilled = threads * CELLIST_BLOCK_NODES;

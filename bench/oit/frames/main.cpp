@@ -53,7 +53,7 @@ void run(const Options& options) {
     measure_accuracy(run);
 
     const cellist::DeviceInfo& info = device.info();
-    const bool gpu = (info.type & CL_DEVICE_TYPE_GPU) != 0;
+    const bool gpu = info.is_gpu();
     bench::Run::Row results{
         {"device", info.name},
         {"platform", info.platform},

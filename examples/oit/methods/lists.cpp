@@ -11,11 +11,9 @@
 namespace oit {
 namespace {
 
-bool is_gpu(const cellist::DeviceInfo& device) { return (device.type & CL_DEVICE_TYPE_GPU) != 0; }
-
 // Up to here, the reader keeps the nearest layers in registers while it visits a list once. For
 // more, sorting the lists is faster.
-std::uint32_t nearest_max(const cellist::DeviceInfo& device) { return is_gpu(device) ? 8 : 16; }
+std::uint32_t nearest_max(const cellist::DeviceInfo& device) { return device.is_gpu() ? 8 : 16; }
 
 // The longest lists that the reader sorts itself; longer ones are sorted before.
 constexpr std::uint32_t sorted_in_reader_max = 127;
@@ -31,9 +29,9 @@ std::string sorting_defines(const cellist::DeviceInfo& device, const NodeLayout&
     constexpr std::uint64_t run = 16;
     constexpr std::uint64_t in_runs_min = 64;
     std::string defines = define("OIT_SORTED", std::bit_ceil(longest + 1));
-    if (is_gpu(device) && has_float_depth(layout.format) && longest >= in_runs_min)
+    if (device.is_gpu() && has_float_depth(layout.format) && longest >= in_runs_min)
         defines += define("OIT_RUN", run);
-    if (!is_gpu(device)) defines += define("OIT_STRIP", strip);
+    if (!device.is_gpu()) defines += define("OIT_STRIP", strip);
     return defines;
 }
 
@@ -140,7 +138,7 @@ private:
     };
 
     void read_unsorted() {
-        if (is_gpu(source_.device().info()))
+        if (source_.device().info().is_gpu())
             source_.run_on_screen(*unsorted_reader_, fragments_, source_.counts(), longer_);
         else
             source_.run_on_strips(strip, *unsorted_reader_, fragments_, source_.counts(), longer_);
@@ -286,7 +284,7 @@ std::unique_ptr<Method> make_list_method(FragmentSource& source,
         return make_list_slices(source, options, reader);
     // GPUs keep few layers in registers while they visit a list in no order.
     const bool may_sort_in_reader =
-        !other_reader && (reader.needs_sorted || !is_gpu(source.device().info()));
+        !other_reader && (reader.needs_sorted || !source.device().info().is_gpu());
     return make_unsliced(source, options, reader, may_sort_in_reader);
 }
 

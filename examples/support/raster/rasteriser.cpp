@@ -17,10 +17,6 @@ namespace {
 constexpr std::size_t batch_size = 64;         // RASTER_BATCH in triangle.clh
 constexpr std::size_t first_capacity = 16384;  // of the queues
 
-bool is_gpu(const cellist::Device& device) {
-    return (device.info().type & CL_DEVICE_TYPE_GPU) != 0;
-}
-
 // What suits a device. On GPUs, a work-item tests the pixels of a cell, and the work-items of a
 // group share out those that are covered. On CPUs, a work-item is a loop of a thread, and scans a
 // whole block.
@@ -31,7 +27,7 @@ struct Tuning {
 };
 
 Tuning tuning_for(const cellist::Device& device) {
-    if (is_gpu(device)) return {8, 4, 1024};
+    if (device.info().is_gpu()) return {8, 4, 1024};
     return {32, 1, 64};
 }
 
@@ -88,7 +84,7 @@ std::string defines(const cellist::Device& device, const Sampling& sampling) {
     return "#define RASTER_BLOCK_PIXELS " + std::to_string(tuning.block_pixels) +
            "\n#define RASTER_LANES " + std::to_string(tuning.lanes) + "\n#define RASTER_SAMPLES " +
            std::to_string(sampling.samples) + "\n" +
-           (is_gpu(device) ? "#define RASTER_PROJECTS\n" : "") +
+           (device.info().is_gpu() ? "#define RASTER_PROJECTS\n" : "") +
            (sampling.depth_range ? "#define RASTER_DEPTH_RANGE\n" : "") +
            (sampling.exact ? "#define RASTER_EXACT\n" : "");
 }
@@ -121,7 +117,7 @@ void append_batches(std::vector<RasterBatch>& batches, std::size_t instance, cl_
 // a mesh.
 std::vector<RasterBatch> in_order_for(const cellist::Device& device,
                                       std::vector<RasterBatch> batches) {
-    if (is_gpu(device)) return batches;
+    if (device.info().is_gpu()) return batches;
     std::vector<RasterBatch> result;
     result.reserve(batches.size());
     for (const unsigned part :
@@ -152,7 +148,7 @@ namespace {
 // A GPU is busy with 8 large batches for each compute unit. With fewer, batches are small and
 // groups large.
 Batching batching_for(const cellist::Device& device, std::size_t triangles) {
-    if (!is_gpu(device)) return {batch_size, batch_size, 32};
+    if (!device.info().is_gpu()) return {batch_size, batch_size, 32};
     const std::size_t units = device.info().compute_units;
     if (triangles >= 8 * units * batch_size) return {batch_size, batch_size, 16};
     const std::size_t groups = 6 * units;
@@ -169,7 +165,7 @@ cellist::LocalMemory waiting_pixels(std::size_t items) {
 // Of the work-items that scan blocks. On GPUs, their groups come after those of the batches.
 cellist::Range block_range(const cellist::Device& device, const cellist::Range& batches) {
     const std::size_t items = device.info().compute_units * tuning_for(device).items;
-    if (!is_gpu(device)) return cellist::Range::padded(items, 1);
+    if (!device.info().is_gpu()) return cellist::Range::padded(items, 1);
     cellist::Range all = cellist::Range::padded(items, batches.local[0]);
     all.global[0] += batches.global[0];
     return all;
@@ -221,7 +217,7 @@ SetupKernels::SetupKernels(const cellist::Device& device, const Sampling& sampli
     : transform(make_kernel(device, setup_source(device, sampling), "raster_transform")),
       bin(make_kernel(device, setup_source(device, sampling), "raster_bin")) {}
 
-bool Pass::draws_at_once(const cellist::Device& device) { return is_gpu(device); }
+bool Pass::draws_at_once(const cellist::Device& device) { return device.info().is_gpu(); }
 
 cellist::Source Pass::pass_source(const cellist::Device& device, const Sampling& sampling,
                                   std::string_view source, const std::string& name,
@@ -262,7 +258,7 @@ Projection::Projection(const cellist::Device& device, SetupKernels& kernels,
                        std::span<const View> views)
     : kernels_(kernels),
       geometry_(geometry),
-      projects_once_(!is_gpu(device)),
+      projects_once_(!device.info().is_gpu()),
       eyes_(views.size()),
       views_(device, views),
       instances_(device, views.size() * placed.size()),
@@ -341,7 +337,7 @@ Triangles::Triangles(const cellist::Device& device, const Projection& projection
       queue_(device, first_capacity),
       blocks_(device, first_capacity),
       counts_(device, 1),
-      may_be_without_queue_(is_gpu(device)) {
+      may_be_without_queue_(device.info().is_gpu()) {
     counts_.fill({});
 }
 
