@@ -11,8 +11,18 @@ namespace oit {
 
 using glm::dvec3;
 
+namespace {
+
+constexpr double no_distance = 0x1p-16;  // as a part of the depth: see blend.clh
+
+}  // namespace
+
 void ReferenceLight::pass_media(double depth) {
-    if (depth_ > 0) transmittance_ *= glm::exp(-extinction_ * ((depth - depth_) * ray_length_));
+    if (depth_ <= 0) return;
+    const double distance = depth - depth_;
+    const dvec3 extinction = glm::max(extinction_, dvec3(0));
+    transmittance_ *= glm::exp(-extinction * (distance * ray_length_));
+    if (distance > no_distance * depth) extinction_ = extinction;
 }
 
 void ReferenceLight::add(const ReferenceFragment& fragment) {
@@ -24,8 +34,7 @@ void ReferenceLight::add(const ReferenceFragment& fragment) {
         case Blend::absorb: {
             constexpr double least = 1e-4;
             const dvec3 extinction = -glm::log(glm::max(fragment.colour, dvec3(least)));
-            extinction_ =
-                glm::max(extinction_ + (fragment.leaves ? -extinction : extinction), dvec3(0));
+            extinction_ += fragment.leaves ? -extinction : extinction;
             return;
         }
         case Blend::additive:
