@@ -52,10 +52,12 @@ typedef ulong cellist_sort_bits;
 #define CELLIST_SORT_SHARED local
 #define cellist_sort_item() ((uint)get_local_id(0))
 #define cellist_sort_barrier() barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE)
-// What work-items of a GPU have in arrays stays in registers only where loops are unrolled, which
-// needs a constant number of steps. On CPUs that takes much longer, to compile and to run.
+// On GPUs, private arrays stay in registers only if loops are unrolled, which needs a constant
+// number of steps. On CPUs, such loops take much longer to compile and to run. `condition` stays
+// false once it is false: CPUs stop there.
 #define cellist_sort_each(i, most, condition)                                                      \
-    _Pragma("unroll") for (uint i = 0; i < (most); ++i) if (condition)
+    _Pragma("unroll") for (uint i = 0; i < (most); ++i) if (!(condition)) {}                       \
+    else
 // Neighbouring lists begin in different banks of local memory.
 #define CELLIST_SORT_STRIDE (CELLIST_SORT_CHUNK_SIZE + 1)
 static inline uint cellist_sort_add(local uint* sum, uint value) { return atomic_add(sum, value); }

@@ -39,6 +39,7 @@ struct DeviceInfo {
     /// A work-group runs on one thread: PoCL on x86-64 and AArch64 processors.
     bool one_thread_per_work_group = false;
 
+    /// Whether the type includes CL_DEVICE_TYPE_GPU.
     [[nodiscard]] bool is_gpu() const { return (type & CL_DEVICE_TYPE_GPU) != 0; }
 };
 

@@ -94,8 +94,8 @@ public:
     /// is valid as long as the Kernel. Does not block.
     [[nodiscard]] const cl::Kernel& cl() const;
     /// Returns the compiler's log of the same kernel's program, with the line numbers of the user's
-    /// source. Empty if there are no warnings. Throws OpenClError if the driver fails. Does not
-    /// block.
+    /// source. Usually empty if there are no warnings; some drivers also report that the build is
+    /// complete. Throws OpenClError if the driver fails. Does not block.
     [[nodiscard]] std::string log() const;
 
     /// @private

@@ -75,8 +75,8 @@ TEST_CASE("a medium without a glossy surface absorbs alone") {
     require_accurate({.scene = scene, .views = {support::frame_unit_sphere({20, 15}, 200, 150)}});
 }
 
-// Slabs from the first to the second z of each, of a medium that is not glossy. The faces of a slab
-// are divided along different diagonals, so float rounds their depths otherwise.
+// Slabs of a medium that is not glossy, each between two values of z. The two faces of a slab are
+// split along different diagonals, so float rounds their depths differently.
 oit::Scene slabs_of(const std::vector<std::pair<float, float>>& ranges) {
     oit::Scene scene;
     support::Mesh mesh;
@@ -120,7 +120,7 @@ TEST_CASE("light passes a slab by the law of Beer and Lambert") {
     }
 }
 
-TEST_CASE("a slab that is too thin for float has no effect on what is behind") {
+TEST_CASE("a slab thinner than float resolves does not change what is behind it") {
     const oit::Scene scene = slabs_of({{0.5F, 0.49999997F}, {-0.4F, -0.6F}});
     require_accurate({.scene = scene, .views = {support::frame_unit_sphere({20, 15}, 200, 150)}});
 }
