@@ -217,21 +217,23 @@ static inline void cellist_sort_order(const uint* ranks, uint length, uint membe
     }
 }
 
+// Most nodes of a list that one work-item moves.
+#define CELLIST_SORT_MOVED (CELLIST_SORT_CHUNK_SIZE / CELLIST_SORT_TEAM)
+
 // Moves the `length` nodes from `first` on into the order that was found, piece by piece. All
 // work-items of the group call it.
 static inline void cellist_sort_permute(global cellist_sort_node* nodes, uint first, uint last,
                                         uint length, uint member,
                                         CELLIST_SORT_SHARED const uchar* order) {
     global cellist_sort_piece* pieces = (global cellist_sort_piece*)(nodes + first);
-    const uint most = CELLIST_SORT_CHUNK_SIZE / CELLIST_SORT_TEAM;
-    cellist_sort_piece moved[CELLIST_SORT_CHUNK_SIZE / CELLIST_SORT_TEAM];
+    cellist_sort_piece moved[CELLIST_SORT_MOVED];
     for (uint piece = 0; piece < CELLIST_SORT_PIECES; ++piece) {
-        cellist_sort_each(i, most, member + i * CELLIST_SORT_TEAM < length) {
+        cellist_sort_each(i, CELLIST_SORT_MOVED, member + i * CELLIST_SORT_TEAM < length) {
             const uint from = order[member + i * CELLIST_SORT_TEAM];
             moved[i] = pieces[(ulong)from * CELLIST_SORT_PIECES + piece];
         }
         cellist_sort_barrier();
-        cellist_sort_each(i, most, member + i * CELLIST_SORT_TEAM < length) {
+        cellist_sort_each(i, CELLIST_SORT_MOVED, member + i * CELLIST_SORT_TEAM < length) {
             const uint at = member + i * CELLIST_SORT_TEAM;
 #if CELLIST_MODES == CELLIST_LINKED && !defined(CELLIST_SORT_PIECE)
             moved[i].stored.next = cellist_sort_link(first + at, last);

@@ -155,8 +155,12 @@ TEST_CASE("an unknown kernel name is an error") {
 
 TEST_CASE("a kernel gives its OpenCL kernel and the log of its build") {
     const Kernel silent(device(), "kernel void f(uint x, global uint* out) { *out = x; }", "f");
-    // Some drivers say that they are done.
-    REQUIRE_FALSE(contains(silent.log(), "warning"));
+    INFO(silent.log());
+    // Intel's driver reports each step of a build.
+    if (device().info().platform == "Intel(R) OpenCL")
+        REQUIRE_FALSE(contains(silent.log(), "warning"));
+    else
+        REQUIRE(silent.log().empty());
     REQUIRE(silent.cl().getInfo<CL_KERNEL_NUM_ARGS>() == 2);
     const Source source{.text = "// a line\n#warning look here\nkernel void g(uint x) {}",
                         .file_name = "warns.cl"};
